@@ -1,0 +1,34 @@
+"""How the surfaces reach the machine, wherever it runs."""
+
+from __future__ import annotations
+
+from concurrent.futures import Future
+from typing import Protocol
+
+from deltaviz.machine.intent import Answer, Intent
+from deltaviz.machine.snapshot import Snapshot
+from deltaviz.robots import Robot
+
+
+class MachinePort(Protocol):
+    """Thread-safe. `post` never blocks; its future is answered by the controller."""
+
+    @property
+    def snapshot(self) -> Snapshot:
+        """The newest picture of the machine."""
+        ...
+
+    @property
+    def robot(self) -> Robot:
+        """The robot that the controller drives now."""
+        ...
+
+    def post(self, intent: Intent) -> Future[Answer]: ...
+
+    def stop(self, client: str, reason: str) -> None:
+        """A controlled stop, by a pipe of its own that is read before all else."""
+        ...
+
+    def estop(self, client: str, reason: str) -> None:
+        """Drivers off, by the same pipe."""
+        ...
