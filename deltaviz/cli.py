@@ -1,0 +1,248 @@
+"""The command line: `deltaviz` alone serves the page; the rest answers in the terminal."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import difflib
+import json
+import math
+import os
+import sys
+from collections.abc import Callable, Sequence
+from importlib.metadata import version
+from typing import NoReturn
+
+OK, FAILED, BAD_USAGE = 0, 1, 2
+
+
+class UsageError(Exception):
+    """A wrong argument; the text says which, and what would be right."""
+
+
+class _Parser(argparse.ArgumentParser):
+    """argparse, with the nearest command named when one is misspelt."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(BAD_USAGE, f"{self.prog}: {message}\nTry '{self.prog} --help'.\n")
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one command; the exit status: 0 done, 1 it could not be done, 2 bad usage."""
+    arguments = _with_default_command(list(sys.argv[1:] if argv is None else argv))
+    options = _parser().parse_args([_shield_negative(a) for a in arguments])
+    command: Callable[[argparse.Namespace], int] = options.run
+    try:
+        return command(options)
+    except UsageError as error:
+        print(f"deltaviz: {error}", file=sys.stderr)
+        return BAD_USAGE
+    except BrokenPipeError:  # the reader of our output left early, as `head` does
+        with contextlib.suppress(OSError):
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return FAILED
+
+
+def _with_default_command(arguments: list[str]) -> list[str]:
+    if not arguments:
+        return ["serve"]
+    first = arguments[0]
+    if first.startswith("-") and first not in ("-h", "--help", "--version"):
+        return ["serve", *arguments]
+    if not first.startswith("-") and first not in _COMMANDS:
+        near = difflib.get_close_matches(first, _COMMANDS, n=1)
+        hint = f" Did you mean '{near[0]}'?" if near else ""
+        known = ", ".join(_COMMANDS)
+        print(f"deltaviz: no command '{first}'.{hint} Commands: {known}.", file=sys.stderr)
+        raise SystemExit(BAD_USAGE)
+    return arguments
+
+
+def _shield_negative(argument: str) -> str:
+    """argparse takes -1e-3 for an option; with a space before it, for the number it is."""
+    if argument.startswith("-"):
+        with contextlib.suppress(ValueError):
+            float(argument)
+            return f" {argument}"
+    return argument
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = _Parser(
+        prog="deltaviz", description="A 3D viewer and jog controller for delta robots."
+    )
+    parser.add_argument("--version", action="version", version=f"deltaviz {version('deltaviz')}")
+    commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
+    for name, (add, summary) in _COMMANDS.items():
+        add(commands.add_parser(name, help=summary, description=summary))
+    return parser
+
+
+def _add_robot(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--robot", default="stm32", metavar="NAME|FILE", help="preset or robot file (stm32)"
+    )
+
+
+def _add_json(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def _add_serve(parser: argparse.ArgumentParser) -> None:
+    _add_robot(parser)
+    parser.add_argument("--link", default="sim://", metavar="URL", help="the board (sim://)")
+    parser.add_argument("--host", default="127.0.0.1", help="address to listen on (127.0.0.1)")
+    parser.add_argument(
+        "--port", type=_port, default=8000, help="port to listen on; 0: any free one (8000)"
+    )
+    parser.add_argument("--no-browser", action="store_true", help="do not open the browser")
+    parser.set_defaults(run=_serve)
+
+
+def _port(text: str) -> int:
+    if not text.strip().isdecimal() or not 0 <= int(text) <= 65535:
+        raise argparse.ArgumentTypeError(f"{text!r} is no port; use a number from 0 to 65535")
+    return int(text)
+
+
+def _serve(options: argparse.Namespace) -> int:
+    from deltaviz.web.serve import serve
+
+    _load(options.robot)  # a misspelt name is told before anything starts
+    return serve(
+        robot=options.robot,
+        link=options.link,
+        host=options.host,
+        port=options.port,
+        browser=not options.no_browser,
+    )
+
+
+def _add_ik(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("xyz", nargs="+", metavar="MM", help="tool tip: X Y Z in mm")
+    _add_robot(parser)
+    _add_json(parser)
+    parser.set_defaults(run=_ik)
+
+
+def _add_fk(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("theta", nargs="+", metavar="DEG", help="one angle per joint, in degrees")
+    _add_robot(parser)
+    _add_json(parser)
+    parser.set_defaults(run=_fk)
+
+
+def _ik(options: argparse.Namespace) -> int:
+    import numpy as np
+
+    robot = _load(options.robot)
+    xyz = _numbers(options.xyz, robot.joint_count, "coordinates", "mm")
+    theta = np.degrees(robot.inverse(np.array(xyz)))
+    if not np.isfinite(theta).all():
+        print(f"deltaviz: {robot.reach(xyz)}", file=sys.stderr)
+        return FAILED
+    _print_values(theta.tolist(), key="theta_deg", unit="°", digits=6, as_json=options.json)
+    _warn_of_limits(robot.reach(xyz))
+    return OK
+
+
+def _fk(options: argparse.Namespace) -> int:
+    import numpy as np
+
+    robot = _load(options.robot)
+    theta = _numbers(options.theta, robot.joint_count, "angles", "degrees")
+    xyz = robot.forward(np.radians(theta))
+    if not np.isfinite(xyz).all():
+        print("deltaviz: with these angles the forearms cannot meet", file=sys.stderr)
+        return FAILED
+    _print_values(xyz.tolist(), key="xyz_mm", unit="mm", digits=6, as_json=options.json)
+    _warn_of_limits(robot.reach(xyz))
+    return OK
+
+
+def _warn_of_limits(reach: object) -> None:
+    if not getattr(reach, "legal", True):
+        print(f"Note: outside this robot's limits. {reach}", file=sys.stderr)
+
+
+def _numbers(texts: Sequence[str], count: int, what: str, unit: str) -> list[float]:
+    if len(texts) != count:
+        raise UsageError(f"this robot takes {count} {what} in {unit}; got {len(texts)}")
+    return [_number(text, unit) for text in texts]
+
+
+def _number(text: str, unit: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        raise UsageError(f"'{text.strip()}' is no number; use {unit} like -12.5") from None
+    if not math.isfinite(value):
+        raise UsageError(f"'{text.strip()}' is not finite; use {unit} like -12.5")
+    return value
+
+
+def _print_values(
+    values: list[float], *, key: str, unit: str, digits: int, as_json: bool
+) -> None:
+    if as_json:
+        print(json.dumps({key: values}))
+    else:
+        shown = (f"{round(v, digits) + 0.0:.{digits}f}" for v in values)  # + 0.0: no "-0"
+        print("  ".join(shown), unit)
+
+
+def _add_robots(parser: argparse.ArgumentParser) -> None:
+    _add_json(parser)
+    parser.set_defaults(run=_robots)
+
+
+def _robots(options: argparse.Namespace) -> int:
+    from deltaviz.robots import load_robot, preset_names
+
+    robots = [load_robot(name) for name in preset_names()]
+    if options.json:
+        print(json.dumps({"robots": [robot.name for robot in robots]}))
+        return OK
+    for robot in robots:
+        low, high = robot.workspace.z
+        print(
+            f"{robot.name:<12} {robot.kind}, {robot.joint_count} joints, "
+            f"Z {low:g} to {high:g} mm, {robot.drive.driver}"
+        )
+    return OK
+
+
+def _add_ports(parser: argparse.ArgumentParser) -> None:
+    _add_json(parser)
+    parser.set_defaults(run=_ports)
+
+
+def _ports(options: argparse.Namespace) -> int:
+    from deltaviz.link.ports import list_ports
+
+    ports = list_ports()
+    if options.json:
+        print(json.dumps({"ports": [{"device": p.device, "what": p.description} for p in ports]}))
+    elif not ports:
+        print("No serial port found. Plug the board in, or use the simulated one: --link sim://")
+    for port in () if options.json else ports:
+        print(f"{port.device:<20} {port.description}")
+    return OK
+
+
+def _load(name: str):  # noqa: ANN202  (its type would import the robots layer)
+    from deltaviz.robots import RobotFileError, load_robot
+
+    try:
+        return load_robot(name)
+    except RobotFileError as error:
+        raise UsageError(str(error)) from None
+
+
+_COMMANDS: dict[str, tuple[Callable[[argparse.ArgumentParser], None], str]] = {
+    "serve": (_add_serve, "Run the server and open the page (the default command)."),
+    "ik": (_add_ik, "Joint angles for a tool tip position."),
+    "fk": (_add_fk, "Tool tip position for joint angles."),
+    "robots": (_add_robots, "The robots that come with deltaviz."),
+    "ports": (_add_ports, "Serial ports, with what they are."),
+}
