@@ -11,7 +11,10 @@ import os
 import sys
 from collections.abc import Callable, Sequence
 from importlib.metadata import version
-from typing import NoReturn
+from typing import TYPE_CHECKING, NoReturn
+
+if TYPE_CHECKING:  # the command line starts before the layers it needs are known
+    from deltaviz.robots import Reach, Robot
 
 OK, FAILED, BAD_USAGE = 0, 1, 2
 
@@ -21,7 +24,7 @@ class UsageError(Exception):
 
 
 class _Parser(argparse.ArgumentParser):
-    """argparse, with the nearest command named when one is misspelt."""
+    """argparse, with errors in two lines rather than a usage dump."""
 
     def error(self, message: str) -> NoReturn:
         self.exit(BAD_USAGE, f"{self.prog}: {message}\nTry '{self.prog} --help'.\n")
@@ -160,8 +163,8 @@ def _fk(options: argparse.Namespace) -> int:
     return OK
 
 
-def _warn_of_limits(reach: object) -> None:
-    if not getattr(reach, "legal", True):
+def _warn_of_limits(reach: Reach) -> None:
+    if not reach.legal:
         print(f"Note: outside this robot's limits. {reach}", file=sys.stderr)
 
 
@@ -181,9 +184,7 @@ def _number(text: str, unit: str) -> float:
     return value
 
 
-def _print_values(
-    values: list[float], *, key: str, unit: str, digits: int, as_json: bool
-) -> None:
+def _print_values(values: list[float], *, key: str, unit: str, digits: int, as_json: bool) -> None:
     if as_json:
         print(json.dumps({key: values}))
     else:
@@ -230,7 +231,7 @@ def _ports(options: argparse.Namespace) -> int:
     return OK
 
 
-def _load(name: str):  # noqa: ANN202  (its type would import the robots layer)
+def _load(name: str) -> Robot:
     from deltaviz.robots import RobotFileError, load_robot
 
     try:
