@@ -1,0 +1,5 @@
+import sys
+
+from deltaviz.cli import main
+
+sys.exit(main())
