@@ -1,13 +1,22 @@
 """Every message between host and board, as values. The bytes come with the codec.
 
-Ticks are the board's step ticks and wrap at 2^32. Positions are in 2^-10 microsteps, velocities
-in 2^-16 microsteps per millisecond, counts in microsteps; each has one entry per joint.
+Ticks are the board's step ticks and wrap at 2^32; epochs and indices wrap at 2^16. Positions are
+in 2^-10 microsteps, velocities in 2^-16 microsteps per millisecond, counts in microsteps; each
+has one entry per joint. A count is the integer part (floor) of the position. Once homed, joint
+angle = count / microsteps_per_rad; before that, counts begin at 0 where the board was switched on.
+
+What the board answers: `Refused(command, reason)` or `Done(command)` to Enable, Arm, Reset, Tool
+and Home (Done("home") comes when it stands homed at the ready pose); `Configured` to Configure;
+`HelloReply` to Hello; `Stopped` to Stop. A Segment is answered only when refused, a Keep never.
+`command` is the message's class name in lower case.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum, IntFlag
+
+PROTOCOL_VERSION = 1
 
 
 class BoardState(IntEnum):
@@ -63,6 +72,8 @@ class Refusal(IntEnum):
     CONFIGURATION = 13
     VERSION = 14
     UNHOMED_SPEED = 15
+    LEASE = 16  # `seen` is too old for a motion to begin
+    INPUT = 17  # the e-stop input is still active
 
 
 class Inputs(IntFlag):
@@ -87,6 +98,12 @@ class TelemetryFlags(IntFlag):
 
 @dataclass(frozen=True, slots=True)
 class Hello:
+    """Begins a session: what still moves brakes (HOST_STOP), an open epoch is closed.
+
+    Counts and homing stay, as the board never lost them. After a version that the board does not
+    speak, all but Hello, Stop and EStop are refused (VERSION).
+    """
+
     version: int
 
 
@@ -94,7 +111,10 @@ class Hello:
 class Configure:
     """What the board must know to guard itself. Angles in rad, lengths in mm.
 
-    The board answers with its hash of these values; the host compares it with its own.
+    Arrays have one entry per joint, 1 to 4; `geometry` names per-arm values of the mechanism and is
+    empty for a robot that the board guards by its joint limits alone. The board answers with its
+    hash of these values; the host compares it with its own. Taken while DISABLED only; the same
+    values again are answered in every state.
     """
 
     kind: str
@@ -117,21 +137,30 @@ class Configure:
     homing_max_travel: float
     homing_together: bool
     ready: tuple[float, ...]
+    workspace_x: tuple[float, float] | None = None
+    workspace_y: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Enable:
+    """On: DISABLED to HALTED. Off: brakes if it moves, then drivers off and unhomed."""
+
     on: bool
 
 
 @dataclass(frozen=True, slots=True)
 class Home:
-    pass
+    """Only while HALTED, and with a live lease (Keep), which homing needs as any motion does."""
 
 
 @dataclass(frozen=True, slots=True)
 class Arm:
-    """Opens an epoch. Accepted only at rest, with an epoch unused since boot and true counts."""
+    """Opens an epoch, from HALTED only: the first segment starts at exactly `counts`, at rest.
+
+    `epoch` must be 1 to 32767 after the board's last one (`HelloReply.last_epoch`), `counts` the
+    board's own, `t_start` the board's present tick as the host knows it (at most 150 ms ago and
+    100 ms ahead). The next segment has index 0.
+    """
 
     epoch: int
     t_start: int
@@ -140,11 +169,27 @@ class Arm:
 
 @dataclass(frozen=True, slots=True)
 class Segment:
-    """The cubic from the last knot to (p, v), which it reaches at `t_end`."""
+    """The cubic from the last knot to (p, v), which it reaches at `t_end` or later.
+
+    It lasts `duration` ticks, 4 to 50 ms, so its nominal start is `t_end - duration`:
+    - After a knot that moves, the nominal start must equal the `t_end` of the segment before.
+    - After a knot at rest (or Arm) there may be a pause: the nominal start must not be before the
+      last `t_end` (or, once the board stands still, not more than 150 ms before now), nor more than
+      100 ms after the queue's end or now. The board waits for the nominal start; one that has
+      passed means at once, and all that follows without a pause is late by as much. So the host
+      takes the board's present tick, as it knows it, as the start of a motion.
+    An epoch whose queue ran dry at rest stays ARMED. A queue that ends in a moving knot brakes
+    (UNDERRUN). `Telemetry.t_queue_end` tells when the queue really ends.
+
+    Refused, and nothing else happens: not ARMED, another epoch, an index that is not the next one,
+    no place in the queue (send it again). Everything else that is wrong with a segment brakes,
+    drops the queue and halts with BAD_SEGMENT; a `seen` too old for a motion to begin: with LEASE.
+    """
 
     epoch: int
     index: int
     t_end: int
+    duration: int
     seen: int
     p: tuple[int, ...]
     v: tuple[int, ...]
@@ -152,19 +197,23 @@ class Segment:
 
 @dataclass(frozen=True, slots=True)
 class Keep:
-    """Extends the board's lease: `seen` is the newest telemetry tick that the host had."""
+    """Extends the board's lease: `seen` is the newest telemetry tick that the host had.
+
+    The lease ends 150 ms after `seen`; a motion under way then brakes (LEASE). A `seen` in the
+    future, or older than the one that counts now, changes nothing.
+    """
 
     seen: int
 
 
 @dataclass(frozen=True, slots=True)
 class Stop:
-    pass
+    """Brakes and halts, in every state. Answered by Stopped as soon as the board is at rest."""
 
 
 @dataclass(frozen=True, slots=True)
 class EStop:
-    pass
+    """Drivers off at once, homing lost. Answered by Stopped."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -174,8 +223,10 @@ class Reset:
 
 @dataclass(frozen=True, slots=True)
 class Tool:
+    """Refused while DISABLED, in ESTOP and in FAULT."""
+
     on: bool
-    servo_angle: float
+    servo_angle: float  # rad
 
 
 # Board to host.
@@ -208,6 +259,7 @@ class Refused:
     command: str
     reason: Refusal
     joint: int | None = None
+    index: int | None = None  # of a segment
 
 
 @dataclass(frozen=True, slots=True)
@@ -219,6 +271,14 @@ class Done:
 
 @dataclass(frozen=True, slots=True)
 class Telemetry:
+    """Every 5 ms of board time, and whenever state, fault or inputs change.
+
+    `epoch` is the last one armed, `last_index` the last segment accepted in it (65535: none yet).
+    `t_queue_end` is when the queue ends, `now` when it is empty; the host's own estimate of it is
+    `t_queue_end` plus the durations of what it sent after `last_index`. `counts` is empty until
+    the board is configured.
+    """
+
     now: int
     state: BoardState
     fault: Fault
@@ -233,7 +293,9 @@ class Telemetry:
 
 @dataclass(frozen=True, slots=True)
 class Stopped:
-    """At rest after a stop of whatever cause; repeated in answer to every STOP."""
+    """At rest after a stop of whatever cause (an end of homing, too); repeated in answer to
+    every Stop that finds the board at rest.
+    """
 
     epoch: int
     cause: StopCause
