@@ -115,6 +115,7 @@ class JogBeat:
     sent_ms: float
     velocity: tuple[float, ...]
     at: float
+    clock: str = ""  # names the page whose clock it is, when a session has several
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,6 +149,7 @@ class DragAlive:
     seq: int
     sent_ms: float
     at: float
+    clock: str = ""  # as in JogBeat
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,6 +192,15 @@ class ReleaseControl:
 
 
 @dataclass(frozen=True, slots=True)
+class ClientHere:
+    """A session's first socket opened. Whoever never says this (a program over HTTP) holds
+    control for one motion only; a page keeps it until it releases it or is gone.
+    """
+
+    client: str
+
+
+@dataclass(frozen=True, slots=True)
 class ClientGone:
     """A session's last socket closed: what it held alive stops, what it controlled is free."""
 
@@ -223,7 +234,7 @@ Intent = (
     | JogStart | JogBeat | JogEnd
     | DragStart | DragTo | DragAlive | DragEnd
     | FollowPoint | FollowAngles
-    | SetOverride | RequestControl | ReleaseControl | ClientGone
+    | SetOverride | RequestControl | ReleaseControl | ClientHere | ClientGone
     | Connect | Disconnect | SelectRobot
 )  # fmt: skip
 
