@@ -1,0 +1,73 @@
+/**
+ * Which key jogs where. Keys are named by their place on the keyboard (`event.code`).
+ *
+ * @import {Frame} from "./types.js"
+ *
+ * @typedef {{direction: number[], modifier?: string}} KeyJog
+ */
+
+/** @type {Readonly<Record<string, readonly [number, number, number]>>} */
+const CARTESIAN = {
+  ArrowRight: [1, 0, 0], KeyD: [1, 0, 0],
+  ArrowLeft: [-1, 0, 0], KeyA: [-1, 0, 0],
+  ArrowUp: [0, 1, 0], KeyW: [0, 1, 0],
+  ArrowDown: [0, -1, 0], KeyS: [0, -1, 0],
+  PageUp: [0, 0, 1], KeyQ: [0, 0, 1],
+  PageDown: [0, 0, -1], KeyE: [0, 0, -1],
+}; // prettier-ignore
+
+/**
+ * @param {{code: string, shiftKey: boolean}} event
+ * @param {Frame} frame
+ * @param {number} joints how many the robot has
+ * @returns {KeyJog | null} null for a key that does not jog in this frame
+ */
+export function keyJog({ code, shiftKey }, frame, joints) {
+  if (frame !== "joints") {
+    const direction = CARTESIAN[code];
+    return direction ? { direction: [...direction] } : null;
+  }
+  const joint = Number(/^(?:Digit|Numpad)([1-9])$/.exec(code)?.[1] ?? 0);
+  if (joint < 1 || joint > joints) return null;
+  const direction = Array.from({ length: joints }, (_, i) => (i === joint - 1 ? 1 : 0));
+  if (!shiftKey) return { direction };
+  return { direction: direction.map((d) => (d === 0 ? 0 : -1)), modifier: "Shift" };
+}
+
+/**
+ * Whether the console has a use for the key in any frame: such keys are kept from viser, whose
+ * camera they would move.
+ *
+ * @param {string} code
+ */
+export function isConsoleKey(code) {
+  return code in CARTESIAN || /^(?:Digit|Numpad)[1-9]$/.test(code);
+}
+
+/**
+ * Whether the element needs the keys for itself. Elements of the frame belong to another
+ * window, so `instanceof` would not know them.
+ *
+ * @param {EventTarget | null} target
+ */
+export function takesKeys(target) {
+  return isTextField(target) || matches(target, "select, input[type=range], [role=slider]");
+}
+
+/** @param {EventTarget | null} target */
+export function isTextField(target) {
+  return matches(
+    target,
+    "textarea, [contenteditable]:not([contenteditable=false]), [role=combobox]," +
+      "input:not([type=button], [type=checkbox], [type=radio], [type=range], [type=submit])",
+  );
+}
+
+/**
+ * @param {EventTarget | null} target
+ * @param {string} selector
+ */
+function matches(target, selector) {
+  const element = /** @type {Element | null} */ (target);
+  return typeof element?.matches === "function" && element.matches(selector);
+}

@@ -1,0 +1,102 @@
+/**
+ * Sliders for the angles and the position, where viser's own panel has no room. A slider shows
+ * the command, except while it is held; letting go moves the robot there.
+ *
+ * @import {Store} from "./store.js"
+ * @import {Robot, Range} from "./robot.js"
+ */
+
+import { post } from "./api.js";
+import { byId, make, setText } from "./dom.js";
+import { formatNumber } from "./numbers.js";
+import { obstacleToMovingThere } from "./obstacle.js";
+
+/** How long a slider keeps the value that it was let go at, until the command follows. */
+const ECHO_MS = 400;
+
+/** @typedef {{input: HTMLInputElement, output: HTMLElement, held: boolean, touched: number}} Slider */
+
+export class Pose {
+  #box = byId("sliders", HTMLElement);
+  #store;
+  #watch;
+  /** @type {Robot | null} */
+  #built = null;
+  /** @type {{field: "theta_deg" | "xyz_mm", sliders: Slider[]}[]} */
+  #groups = [];
+
+  /** @param {{store: Store, watch: (action: Promise<unknown>) => void}} parts */
+  constructor({ store, watch }) {
+    this.#store = store;
+    this.#watch = watch;
+    store.addView(() => this.#draw());
+  }
+
+  #draw() {
+    const { state, robot } = this.#store;
+    if (robot !== this.#built) this.#build(robot);
+    const barred = obstacleToMovingThere(this.#store) !== null;
+    for (const { field, sliders } of this.#groups) {
+      const command = state?.[`command_${field}`];
+      const reported = state?.[field];
+      sliders.forEach((slider, i) => {
+        slider.input.disabled = barred;
+        const free = !slider.held && performance.now() - slider.touched > ECHO_MS;
+        const value = command?.[i];
+        if (free && value !== undefined) slider.input.value = String(value);
+        const shown = slider.held ? Number(slider.input.value) : reported?.[i];
+        setText(slider.output, formatNumber(shown, 1));
+      });
+    }
+  }
+
+  /** @param {Robot | null} robot */
+  #build(robot) {
+    this.#built = robot;
+    this.#box.replaceChildren();
+    this.#groups = [];
+    if (robot === null) return;
+    this.#addGroup("theta_deg", robot.angles.map((range, i) => ({ name: `θ${i + 1} °`, range })));
+    this.#addGroup("xyz_mm", robot.axes.map((range, i) => ({ name: `${"XYZ"[i]} mm`, range })));
+  }
+
+  /**
+   * @param {"theta_deg" | "xyz_mm"} field
+   * @param {{name: string, range: Range}[]} rows
+   */
+  #addGroup(field, rows) {
+    /** @type {Slider[]} */
+    const sliders = rows.map(({ name, range: [min, max] }) => {
+      const input = make("input", {
+        type: "range", min: String(min), max: String(max), step: "0.1", "aria-label": name,
+      });
+      const output = make("span", { class: "numbers" }, "–");
+      this.#box.append(make("label", { class: "row" }, make("span", { class: "label" }, name), input, output));
+      return { input, output, held: false, touched: -Infinity };
+    });
+    this.#groups.push({ field, sliders });
+    sliders.forEach((slider, i) => this.#listen(slider, i, field, sliders));
+  }
+
+  /**
+   * @param {Slider} slider
+   * @param {number} index
+   * @param {"theta_deg" | "xyz_mm"} field
+   * @param {Slider[]} sliders
+   */
+  #listen(slider, index, field, sliders) {
+    slider.input.addEventListener("input", () => {
+      slider.held = true;
+      this.#store.changed();
+    });
+    slider.input.addEventListener("change", () => {
+      slider.held = false;
+      slider.touched = performance.now();
+      const command = this.#store.state?.[`command_${field}`];
+      const target = sliders.map(({ input }, i) =>
+        i === index ? Number(input.value) : (command?.[i] ?? Number(input.value)),
+      );
+      this.#watch(post("move", { [field]: target, speed: 1 }));
+    });
+  }
+}

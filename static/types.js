@@ -1,0 +1,45 @@
+/**
+ * The shapes that travel between the server and this page. Lengths in mm, angles in degrees.
+ *
+ * @typedef {"offline" | "disabled" | "unhomed" | "homing" | "idle" | "jogging" | "moving"
+ *   | "running" | "paused" | "stopping" | "fault" | "estop"} Mode
+ *
+ * @typedef {{limit: string, arm: number | null, way_out: string[]}} Held
+ *
+ * @typedef {{
+ *   mode: Mode,
+ *   homed: boolean,
+ *   robot: string,
+ *   xyz_mm: number[] | null,
+ *   theta_deg: number[] | null,
+ *   command_xyz_mm: number[] | null,
+ *   command_theta_deg: number[] | null,
+ *   target_xyz_mm: number[] | null,
+ *   target_theta_deg: number[] | null,
+ *   xyz_speed_share: number[] | null,
+ *   theta_speed_share: number[] | null,
+ *   margins: number[],
+ *   held_by: Held[],
+ *   link: {id: string, connected: boolean, age_ms: number | null, problem: string | null},
+ *   control: {holder: "you" | "another" | null, you: boolean},
+ *   stop_reason: string | null,
+ *   fault: string | null,
+ *   override: number,
+ *   next_step: string | null,
+ *   board_time_s: number | null,
+ *   underruns: number,
+ * }} RobotState
+ *
+ * The frame a jog is meant in. In `camera` the axes are right, away from the viewer, and up.
+ * @typedef {"base" | "joints" | "camera"} Frame
+ *
+ * A message to the server; every one has a `type`.
+ * @typedef {{type: string, [field: string]: unknown}} Message
+ *
+ * A message from the server.
+ * @typedef {{type: "state"} & RobotState} StateMessage
+ * @typedef {{type: "refused", to: string, id: string | null, detail: string}} RefusedMessage
+ * @typedef {{type: "error", detail: string}} ErrorMessage
+ */
+
+export {};
