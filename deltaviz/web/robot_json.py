@@ -1,0 +1,47 @@
+"""The robot as the pages and programs see it: what it is, what it may do, what else there is."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import Any
+
+from deltaviz.robots import Robot, preset_names
+
+
+def robot_json(robot: Robot) -> dict[str, Any]:
+    """Lengths in mm, angles in degrees, one entry per joint; null where there is no such limit."""
+    joint, cartesian = robot.limits.joint, robot.limits.cartesian
+    return {
+        "name": robot.name,
+        "kind": robot.kind,
+        "joints": robot.joint_count,
+        "geometry": {**asdict(robot.mechanism), "tool_offset": list(robot.tool_offset)},
+        "workspace": {
+            axis: _plain(getattr(robot.workspace, axis)) for axis in ("x", "y", "z", "radius")
+        },
+        "limits": {
+            "joint": {
+                "min_deg": _degrees(robot.joints.min),
+                "max_deg": _degrees(robot.joints.max),
+                "velocity_deg_s": _degrees(joint.velocity),
+                "acceleration_deg_s2": _degrees(joint.acceleration),
+                "unhomed_velocity_deg_s": _degrees(joint.unhomed_velocity),
+            },
+            "cartesian": {
+                "velocity": cartesian.velocity,
+                "acceleration": cartesian.acceleration,
+                "jerk": cartesian.jerk,
+            },
+        },
+        "presets": sorted({*preset_names(), robot.name}),
+    }
+
+
+def _plain(value: float | Sequence[float] | None) -> float | list[float] | None:
+    return list(value) if isinstance(value, Sequence) else value
+
+
+def _degrees(angles: Sequence[float]) -> list[float]:
+    return [round(math.degrees(angle), 9) + 0.0 for angle in angles]

@@ -1,0 +1,84 @@
+"""The snapshot as the pages and programs see it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from deltaviz.machine.snapshot import LinkStatus, Snapshot
+from deltaviz.robots import Robot
+from deltaviz.web.axes import to_surface_point
+
+_DIGITS = 4  # of a mm or a degree: finer than any board's step
+
+
+def state_json(snapshot: Snapshot, *, robot: Robot, client: str, now: float) -> dict[str, Any]:
+    """The state for one client. `now` is the monotonic time (s), for the age of the telemetry.
+
+    Angles in degrees, lengths in mm; null where unknown, never NaN, never -0.
+    """
+    return {
+        "mode": str(snapshot.mode),
+        "homed": snapshot.homed,
+        "robot": snapshot.robot,
+        "xyz_mm": _point(snapshot.xyz),
+        "theta_deg": _angles(snapshot.theta),
+        "command_xyz_mm": _point(snapshot.command_xyz),
+        "command_theta_deg": _angles(snapshot.command_theta),
+        "target_xyz_mm": _point(snapshot.target_xyz),
+        "target_theta_deg": _angles(snapshot.target_theta),
+        "xyz_speed_share": _point_shares(snapshot.xyz_speed, robot.limits.cartesian.velocity),
+        "theta_speed_share": _shares(snapshot.theta_speed, robot.limits.joint.velocity),
+        "margins": [_number(margin) for margin in snapshot.margins],
+        "held_by": [
+            {"limit": held.limit, "arm": held.arm, "way_out": list(held.way_out)}
+            for held in snapshot.held_by
+        ],
+        "link": _link(snapshot.link, waited=max(0.0, now - snapshot.at)),
+        "control": _control(snapshot.holder, client),
+        "stop_reason": snapshot.stop_reason,
+        "fault": snapshot.fault,
+        "override": _number(snapshot.override),
+        "next_step": snapshot.next_step,
+        "board_time_s": None if snapshot.board_time is None else _number(snapshot.board_time),
+        "underruns": snapshot.underruns,
+    }
+
+
+def _link(link: LinkStatus, *, waited: float) -> dict[str, Any]:
+    age = None if link.age is None else (link.age + waited) * 1000
+    return {
+        "id": link.id,
+        "connected": link.connected,
+        "age_ms": None if age is None else _number(age, digits=1),
+        "problem": link.problem,
+    }
+
+
+def _control(holder: str | None, client: str) -> dict[str, Any]:
+    you = holder == client
+    return {"holder": "you" if you else None if holder is None else "another", "you": you}
+
+
+def _point(xyz: Sequence[float] | None) -> list[float | None] | None:
+    return None if xyz is None else [_number(value) for value in to_surface_point(xyz)]
+
+
+def _angles(theta: Sequence[float] | None) -> list[float | None] | None:
+    return None if theta is None else [_number(math.degrees(angle)) for angle in theta]
+
+
+def _point_shares(speed: Sequence[float] | None, limit: float) -> list[float | None] | None:
+    return None if speed is None else _shares(to_surface_point(speed), [limit] * 3)
+
+
+def _shares(speed: Sequence[float] | None, limits: Sequence[float]) -> list[float | None] | None:
+    if speed is None:
+        return None
+    # A robot just chosen may have another number of joints than this older snapshot.
+    return [_number(min(1.0, abs(v) / limit)) for v, limit in zip(speed, limits, strict=False)]
+
+
+def _number(value: float, *, digits: int = _DIGITS) -> float | None:
+    return round(value, digits) + 0.0 if math.isfinite(value) else None
