@@ -89,10 +89,15 @@ export class Hands {
   }
 
   /**
+   * The server no longer lets the jog with this id live.
+   *
    * @param {string | null} id
+   * @returns {boolean} whether it was the one that is held
    */
   refused(id) {
-    this.#send(this.#jog.refuse(id));
+    const ended = this.#jog.refuse(id);
+    this.#send(ended);
+    return ended.length > 0;
   }
 
   #keepBeating() {

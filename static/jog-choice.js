@@ -8,7 +8,7 @@ export class JogChoice {
   /** @type {Frame} */
   chosen = "base";
   /** @type {number | null} mm or degrees; null: held */
-  step = null;
+  chosenStep = null;
 
   /**
    * The frame in force: an unhomed robot moves by single joints only.
@@ -17,6 +17,30 @@ export class JogChoice {
    * @returns {Frame}
    */
   frame(state) {
-    return state !== null && state.mode === "unhomed" ? "joints" : this.chosen;
+    return unhomed(state) ? "joints" : this.chosen;
   }
+
+  /**
+   * Whether steps can be made: not before homing, and not in the camera's frame, of which only
+   * the server knows how it lies.
+   *
+   * @param {RobotState | null} state
+   */
+  steps(state) {
+    return !unhomed(state) && this.chosen !== "camera";
+  }
+
+  /**
+   * The step in force; null: presses are held.
+   *
+   * @param {RobotState | null} state
+   */
+  step(state) {
+    return this.steps(state) ? this.chosenStep : null;
+  }
+}
+
+/** @param {RobotState | null} state */
+function unhomed(state) {
+  return state !== null && !state.homed;
 }

@@ -93,11 +93,15 @@ export class JogPad {
     }
     for (const button of this.#steps) {
       button.addEventListener("click", () =>
-        this.#choose(() => (choice.step = Number(button.dataset["step"]) || null)),
+        this.#choose(() => (choice.chosenStep = Number(button.dataset["step"]) || null)),
       );
     }
     this.#pad.addEventListener("contextmenu", (event) => event.preventDefault());
     store.addView(() => this.#draw());
+  }
+
+  get #step() {
+    return this.#choice.step(this.#store.state);
   }
 
   /** @param {() => void} change */
@@ -115,7 +119,9 @@ export class JogPad {
     const unhomed = frame !== this.#choice.chosen;
     for (const button of this.#frames) button.disabled = unhomed && button.dataset["frame"] !== frame;
     markPressed(this.#frames, (b) => b.dataset["frame"] === frame);
-    markPressed(this.#steps, (b) => (Number(b.dataset["step"]) || null) === this.#choice.step);
+    const step = this.#choice.step(state);
+    for (const button of this.#steps) button.disabled = !this.#choice.steps(state) && button.dataset["step"] !== "";
+    markPressed(this.#steps, (b) => (Number(b.dataset["step"]) || null) === step);
     setText(byId("step-label", HTMLElement), frame === "joints" ? "Step °" : "Step mm");
     const speed = byId("jog-speed", HTMLElement);
     if (robot && state) setText(speed, jogSpeedText(robot, frame, state.homed, state.override));
@@ -160,7 +166,7 @@ export class JogPad {
    */
   #listen(button, direction) {
     button.addEventListener("pointerdown", (event) => {
-      if (this.#choice.step !== null || event.button !== 0) return;
+      if (this.#step !== null || event.button !== 0) return;
       if (event.ctrlKey || event.altKey || event.metaKey) return;
       button.setPointerCapture(event.pointerId);
       this.#press(`pointer:${event.pointerId}`, direction);
@@ -169,12 +175,12 @@ export class JogPad {
       button.addEventListener(type, (event) => this.#hands.release(`pointer:${event.pointerId}`));
     }
     button.addEventListener("click", () => {
-      if (this.#choice.step !== null) this.#press("click", direction);
+      if (this.#step !== null) this.#press("click", direction);
     });
     button.addEventListener("keydown", (event) => {
       if (event.key !== " " && event.key !== "Enter") return;
       if (event.repeat || event.ctrlKey || event.altKey || event.metaKey) event.preventDefault();
-      else if (this.#choice.step === null) this.#press(`key:${event.code}`, direction);
+      else if (this.#step === null) this.#press(`key:${event.code}`, direction);
     });
   }
 }

@@ -22,11 +22,8 @@ export const LEASE_MS = 200;
 /** How long the server may take to report that it is jogging. */
 export const ANSWER_MS = 1000;
 
-/**
- * Modes that a jog can live in. A step that is still moving gives way to it.
- * @type {ReadonlySet<Mode>}
- */
-export const MODES_THAT_JOG = new Set(["idle", "unhomed", "jogging", "moving"]);
+/** @type {ReadonlySet<Mode>} */
+const MODES_THAT_JOG = new Set(["idle", "unhomed", "jogging"]);
 
 export class Jog {
   /** @type {HeldJog | null} */
@@ -124,8 +121,7 @@ export class Jog {
     const held = this.#held;
     if (held === null) return [];
     const stopped = state.stop_reason !== null && state.stop_reason !== held.stopReason;
-    const resting = state.mode === "idle" || state.mode === "moving";
-    const unanswered = resting && now - held.began > ANSWER_MS;
+    const unanswered = state.mode !== "jogging" && now - held.began > ANSWER_MS;
     const ended =
       !MODES_THAT_JOG.has(state.mode) || stopped || unanswered || state.control.holder === "another";
     held.stopReason = state.stop_reason;

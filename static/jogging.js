@@ -53,7 +53,7 @@ export class Jogging {
       return;
     }
     const frame = this.#choice.frame(state);
-    const { step } = this.#choice;
+    const step = this.#choice.step(state);
     if (step !== null) {
       void this.#notices.watch(this.#step(direction.map((d) => d * step), frame));
       return;
@@ -68,7 +68,6 @@ export class Jogging {
    * @param {import("./types.js").Frame} frame
    */
   #step(by, frame) {
-    if (frame === "joints") return post("jog", { theta_deg: by });
-    return post("jog", frame === "camera" ? { xyz_mm: by, frame } : { xyz_mm: by });
+    return post("jog", frame === "joints" ? { theta_deg: by } : { xyz_mm: by });
   }
 }

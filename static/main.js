@@ -127,8 +127,9 @@ function received(message) {
   if (message.type === "state") {
     store.receive(message);
   } else if (message.type === "refused") {
-    hands.refused(message.id);
-    if (message.to !== "drag_alive") notices.say("warn", message.detail);
+    const wasHeld = hands.refused(message.id);
+    const isBeat = message.to === "drag_alive" || message.to === "jog" || message.to === "jog_end";
+    if (wasHeld || !isBeat) notices.say("warn", message.detail);
   } else if (message.type === "error") {
     notices.say("warn", message.detail);
   }
@@ -150,7 +151,7 @@ async function loadRobot() {
 }
 
 function themeChanged() {
-  setText(themeButton, { auto: "Auto", light: "Light", dark: "Dark" }[theme.theme]);
+  setText(themeButton, { auto: "◐ Auto", light: "○ Light", dark: "● Dark" }[theme.theme]);
   themeButton.setAttribute("aria-label", `Theme: ${theme.theme}`);
   themeButton.title = "Theme: as the system has it, light, or dark";
   tellTheme();

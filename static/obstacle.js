@@ -11,6 +11,7 @@ const BY_MODE = {
   offline: "Connect a link first.",
   disabled: "Enable the drivers first.",
   homing: "Wait until homing ends.",
+  moving: "Wait until the move ends, or stop it.",
   running: "A program runs.",
   paused: "A program is paused.",
   stopping: "Wait until the robot is at rest.",

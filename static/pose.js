@@ -12,7 +12,10 @@ import { formatNumber } from "./numbers.js";
 import { obstacleToMovingThere } from "./obstacle.js";
 
 /** How long a slider keeps the value that it was let go at, until the command follows. */
-const ECHO_MS = 400;
+const ECHO_MS = 600;
+
+/** Arrow keys change a slider many times; one move follows when they pause. */
+const KEYS_MS = 150;
 
 /** @typedef {{input: HTMLInputElement, output: HTMLElement, held: boolean, touched: number}} Slider */
 
@@ -24,6 +27,8 @@ export class Pose {
   #built = null;
   /** @type {{field: "theta_deg" | "xyz_mm", sliders: Slider[]}[]} */
   #groups = [];
+  /** @type {number | undefined} */
+  #waiting;
 
   /** @param {{store: Store, watch: (action: Promise<unknown>) => void}} parts */
   constructor({ store, watch }) {
@@ -35,7 +40,8 @@ export class Pose {
   #draw() {
     const { state, robot } = this.#store;
     if (robot !== this.#built) this.#build(robot);
-    const barred = obstacleToMovingThere(this.#store) !== null;
+    const moving = state?.mode === "moving" || state?.mode === "jogging";
+    const barred = !moving && obstacleToMovingThere(this.#store) !== null;
     for (const { field, sliders } of this.#groups) {
       const command = state?.[`command_${field}`];
       const reported = state?.[field];
@@ -92,11 +98,21 @@ export class Pose {
     slider.input.addEventListener("change", () => {
       slider.held = false;
       slider.touched = performance.now();
-      const command = this.#store.state?.[`command_${field}`];
-      const target = sliders.map(({ input }, i) =>
-        i === index ? Number(input.value) : (command?.[i] ?? Number(input.value)),
-      );
-      this.#watch(post("move", { [field]: target, speed: 1 }));
+      clearTimeout(this.#waiting);
+      this.#waiting = setTimeout(() => this.#go(field, index, sliders), KEYS_MS);
     });
+  }
+
+  /**
+   * @param {"theta_deg" | "xyz_mm"} field
+   * @param {number} index of the slider that was let go
+   * @param {Slider[]} sliders
+   */
+  #go(field, index, sliders) {
+    const command = this.#store.state?.[`command_${field}`];
+    const target = sliders.map(({ input }, i) =>
+      i === index ? Number(input.value) : (command?.[i] ?? Number(input.value)),
+    );
+    this.#watch(post("move", { [field]: target, speed: 1 }));
   }
 }

@@ -28,15 +28,15 @@ export function readRobot(answer) {
   const joints = Number(answer.joints);
   const { joint, cartesian } = answer.limits;
   const [low, high] = answer.workspace.z;
-  const radius = answer.workspace.radius;
+  const around = answer.workspace.radius ?? Math.abs(low);
   return {
     name: answer.name,
     joints,
     presets: answer.presets,
     angles: pairs(joint.min_deg, joint.max_deg, joints),
     axes: [
-      answer.workspace.x ?? [-radius, radius],
-      answer.workspace.y ?? [-radius, radius],
+      answer.workspace.x ?? [-around, around],
+      answer.workspace.y ?? [-around, around],
       [low, high],
     ],
     speed: cartesian.velocity,

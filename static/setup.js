@@ -58,8 +58,8 @@ export class LinkChoice {
 
   /** Asks which links there are. */
   async refresh() {
-    const links = await get("ports");
-    const options = links.map((/** @type {{id: string, description: string}} */ { id, description }) =>
+    const { ports } = await get("ports");
+    const options = ports.map((/** @type {{id: string, description: string}} */ { id, description }) =>
       make("option", { value: id }, description),
     );
     this.#select.replaceChildren(...options);

@@ -28,7 +28,7 @@ export class Views {
 
   /** Whether the jog pad is on the screen. */
   get jogShown() {
-    return this.#pad.checkVisibility();
+    return this.#pad.checkVisibility({ visibilityProperty: true });
   }
 
   /** @param {View} view */

@@ -1,0 +1,268 @@
+"""The console in a real Chromium, before a small server that the tests play the machine with."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+import uvicorn
+from playwright.sync_api import Browser, Page, sync_playwright
+from starlette.applications import Starlette
+from starlette.requests import Request
+from starlette.responses import HTMLResponse, JSONResponse, Response
+from starlette.routing import Mount, Route, WebSocketRoute
+from starlette.staticfiles import StaticFiles
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+STATIC = Path(__file__).parents[2] / "static"
+CHROMIUM = "/usr/bin/chromium"
+CHROMIUM_ARGS = (
+    "--no-sandbox --use-angle=swiftshader --enable-unsafe-swiftshader --ignore-gpu-blocklist"
+    " --disable-background-networking --disable-component-update --disable-sync"
+).split()
+CSP = (
+    "default-src 'self'; script-src 'self'; style-src 'self'; img-src 'self' data:;"
+    " connect-src 'self'; frame-src 'self'; frame-ancestors 'none'; base-uri 'none';"
+    " form-action 'none'"
+)
+SCENE = """<!doctype html><title>scene</title>
+<style>html,body{height:100%;margin:0}#slider{position:absolute;left:8px;top:40px}</style>
+<canvas id="canvas" tabindex="0" style="width:100%;height:100%;background:#ccd"></canvas>
+<input id="box" style="position:absolute;left:8px;top:8px;width:60px">
+<div id="slider" role="slider" tabindex="0">slider</div>
+<script>
+window.heard = [];
+for (const type of ["keydown", "keyup"])
+  window.addEventListener(type, (e) => window.heard.push(type + " " + e.code));
+</script>"""
+
+READY: dict[str, Any] = {
+    "mode": "idle",
+    "homed": True,
+    "robot": "stm32",
+    "xyz_mm": [12.4, -3.15, -301.02],
+    "theta_deg": [21.44, 18.02, 24.91],
+    "command_xyz_mm": [12.4, -3.15, -301.0],
+    "command_theta_deg": [21.44, 18.02, 24.9],
+    "target_xyz_mm": [12.4, -3.15, -301.0],
+    "target_theta_deg": [21.44, 18.02, 24.9],
+    "xyz_speed_share": [0.0, 0.0, 0.0],
+    "theta_speed_share": [0.0, 0.0, 0.0],
+    "margins": [0.9, 0.9, 0.9],
+    "held_by": [],
+    "link": {"id": "sim", "connected": True, "age_ms": 4.0, "problem": None},
+    "control": {"holder": "you", "you": True},
+    "stop_reason": None,
+    "fault": None,
+    "override": 1.0,
+    "next_step": None,
+    "board_time_s": 1.0,
+    "underruns": 0,
+}
+ROBOT: dict[str, Any] = {
+    "name": "stm32",
+    "joints": 3,
+    "presets": ["deltadraw", "stm32", "trossen", "zheng2023"],
+    "workspace": {"z": [-440, -225], "radius": 230, "x": None, "y": None},
+    "limits": {
+        "joint": {
+            "min_deg": [-45, -45, -45],
+            "max_deg": [90, 90, 90],
+            "velocity_deg_s": [340, 340, 340],
+            "unhomed_velocity_deg_s": [5, 5, 5],
+        },
+        "cartesian": {"velocity": 600, "acceleration": 6000, "jerk": 150000},
+    },
+}
+
+
+class Machine:
+    """The server's side of the page: sends the state given, keeps what the page says."""
+
+    def __init__(self) -> None:
+        self.lock = threading.Lock()
+        self.reset()
+        routes = [
+            WebSocketRoute("/ws", self._socket),
+            Route("/scene/", self._scene),
+            Route("/api/{path:path}", self._api, methods=["GET", "POST"]),
+            Mount("/", StaticFiles(directory=STATIC, html=True)),
+        ]
+        self.app = Starlette(routes=routes)
+        self.sockets: set[WebSocket] = set()
+
+    def reset(self) -> None:
+        with self.lock:
+            self.state = json.loads(json.dumps(READY))
+            self.robot = json.loads(json.dumps(ROBOT))
+            self.heard: list[tuple[float, dict[str, Any]]] = []
+            self.posts: list[tuple[str, Any]] = []
+            self.refusals: dict[str, tuple[int, str]] = {}
+            self.accepts = True
+            self.silent = False
+
+    def set(self, **fields: Any) -> None:
+        with self.lock:
+            self.state.update(fields)
+
+    def messages(self, *types: str) -> list[dict[str, Any]]:
+        with self.lock:
+            return [m for _, m in self.heard if not types or m["type"] in types]
+
+    def posted(self, path: str) -> list[Any]:
+        with self.lock:
+            return [body for p, body in self.posts if p == path]
+
+    def forget(self) -> None:
+        with self.lock:
+            self.heard.clear()
+            self.posts.clear()
+
+    def say(self, message: dict[str, Any]) -> None:
+        """Sends a message of its own to every page."""
+        for socket in list(self.sockets):
+            asyncio.run_coroutine_threadsafe(socket.send_json(message), self.loop).result(5)
+
+    def cut(self) -> None:
+        """Closes every page's socket."""
+        for socket in list(self.sockets):
+            asyncio.run_coroutine_threadsafe(socket.close(1001), self.loop).result(5)
+
+    async def _socket(self, socket: WebSocket) -> None:
+        if not self.accepts:
+            await socket.close()
+            return
+        await socket.accept()
+        self.sockets.add(socket)
+        sender = asyncio.create_task(self._send_states(socket))
+        try:
+            while True:
+                message = await socket.receive_json()
+                with self.lock:
+                    self.heard.append((time.monotonic(), message))
+        except (WebSocketDisconnect, RuntimeError):
+            pass
+        finally:
+            self.sockets.discard(socket)
+            sender.cancel()
+
+    async def _send_states(self, socket: WebSocket) -> None:
+        while True:
+            with self.lock:
+                state = None if self.silent else {"type": "state", **self.state}
+            if state is not None:
+                await socket.send_json(state)
+            await asyncio.sleep(1 / 30)
+
+    async def _api(self, request: Request) -> Response:
+        path = request.path_params["path"]
+        if request.method == "GET":
+            return JSONResponse({"robot": self.robot, "ports": self.ports, "state": self.state}[path])
+        body = await request.body()
+        with self.lock:
+            self.posts.append((path, json.loads(body) if body else None))
+            status, detail = self.refusals.get(path, (202, ""))
+        return JSONResponse({"detail": detail}, status)
+
+    ports: Any = {"ports": [{"id": "sim", "description": "Simulated board"}]}  # noqa: RUF012
+
+    async def _scene(self, _request: Request) -> Response:
+        return HTMLResponse(SCENE)
+
+
+async def _with_policy(app: Any, scope: Any, receive: Any, send: Any) -> None:
+    async def guarded(message: Any) -> None:
+        if message["type"] == "http.response.start" and not scope["path"].startswith("/scene"):
+            message["headers"].append((b"content-security-policy", CSP.encode()))
+        await send(message)
+
+    await app(scope, receive, guarded)
+
+
+@pytest.fixture(scope="session")
+def served() -> Iterator[tuple[Machine, str]]:
+    machine = Machine()
+
+    async def app(scope: Any, receive: Any, send: Any) -> None:
+        await _with_policy(machine.app, scope, receive, send)
+
+    config = uvicorn.Config(app, host="127.0.0.1", port=0, log_level="error", lifespan="off")
+    server = uvicorn.Server(config)
+
+    async def run() -> None:
+        machine.loop = asyncio.get_running_loop()
+        await server.serve()
+
+    thread = threading.Thread(target=asyncio.run, args=(run(),), daemon=True)
+    thread.start()
+    until(lambda: server.started)
+    port = server.servers[0].sockets[0].getsockname()[1]
+    yield machine, f"http://127.0.0.1:{port}"
+    server.should_exit = True
+    thread.join(10)
+
+
+def until(condition: Callable[[], Any], seconds: float = 10.0) -> Any:
+    """Waits for something that is bound to happen, and gives it."""
+    end = time.monotonic() + seconds
+    while not (found := condition()):
+        if time.monotonic() > end:
+            raise AssertionError(f"did not happen within {seconds} s")
+        time.sleep(0.005)
+    return found
+
+
+@pytest.fixture
+def wait_until() -> Callable[..., Any]:
+    return until
+
+
+@pytest.fixture
+def machine(served: tuple[Machine, str]) -> Machine:
+    served[0].reset()
+    return served[0]
+
+
+@pytest.fixture
+def url(served: tuple[Machine, str]) -> str:
+    return served[1]
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=CHROMIUM_ARGS)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def open_page(browser: Browser, machine: Machine, url: str) -> Iterator[Callable[..., Page]]:
+    """Opens the console, connected and drawn; fails the test on any error on the page."""
+    contexts = []
+    errors: list[str] = []
+
+    def open_(width: int = 1280, height: int = 800, **options: Any) -> Page:
+        context = browser.new_context(viewport={"width": width, "height": height}, **options)
+        contexts.append(context)
+        page = context.new_page()
+        page.on("pageerror", lambda error: errors.append(str(error)))
+        page.on("console", lambda m: errors.append(m.text) if "Content Security" in m.text else None)
+        page.goto(url + "/")
+        page.wait_for_selector("#pad button")
+        page.wait_for_function("document.querySelector('#override-text').textContent !== ''")
+        page.wait_for_function("!document.querySelector('#control').disabled")
+        page.wait_for_function("document.querySelectorAll('#sliders input').length > 0")
+        page.frame_locator("#scene").locator("body").wait_for()
+        return page
+
+    yield open_
+    for context in contexts:
+        context.close()
+    assert errors == []
