@@ -1,0 +1,172 @@
+"""What belongs to one browser: its theme, its display choices, its grip on the robot."""
+
+from __future__ import annotations
+
+import html
+import math
+from collections.abc import Callable, Coroutine
+from dataclasses import dataclass
+
+import numpy as np
+import viser
+from viser import ClientHandle, GuiCheckboxHandle, GuiEvent
+
+from deltaviz.scene import colours, per_client
+from deltaviz.scene.controls import Controls
+from deltaviz.scene.drag import BINDINGS, Dragging
+from deltaviz.scene.panel import Panel
+from deltaviz.scene.robot_model import RobotModel
+
+HANDLE = "/robot/effector/handle"
+
+_LEAST_SHARE = 0.075  # of the picture's smaller side: a radius that makes 44 px on a phone
+_LEAST_PIXELS = 26.0
+_REFINE = 1.06  # a change of size smaller than this is not worth a message
+
+
+@dataclass
+class Display:
+    """What one session chose to see; kept while its browser reconnects."""
+
+    trail: bool = True
+    ghost: bool = True
+    labels: bool = False
+    workspace: bool = False
+    shadows: bool = False
+    reflections: bool = False
+    dark: bool = False
+
+
+_LAYERS = {"trail": "/trail", "ghost": "/ghost", "labels": "/labels", "workspace": "/workspace"}
+_TITLES = {
+    "trail": "Trail",
+    "ghost": "Ghost at the target",
+    "labels": "Joint labels",
+    "workspace": "Workspace",
+    "shadows": "Shadows",
+    "reflections": "Reflections",
+}
+
+
+class Viewer:
+    """One browser. Runs in viser's event loop only."""
+
+    def __init__(
+        self,
+        client: ClientHandle,
+        session: str | None,
+        *,
+        display: Display,
+        panel: Panel,
+        controls: Controls,
+        dragging: Dragging,
+    ) -> None:
+        self.client = client
+        self.session = session
+        self._display = display
+        self._panel = panel
+        self._controls = controls
+        self._dragging = dragging
+        self._may_steer: bool | None = None
+        self._handle: viser.IcosphereHandle | None = None
+        self._handle_scale = 1.0
+        self._toggles = self._add_toggles()
+        self._note = client.gui.add_html("", visible=False, order=-1.0)
+        self.apply_theme()
+        for choice in (*_LAYERS, "shadows", "reflections"):
+            self._apply(choice)
+
+    def leave(self) -> None:
+        """The browser is gone."""
+        for toggle in self._toggles:
+            self._controls.retire(toggle)
+
+    def apply_theme(self) -> None:
+        self.client.gui.configure_theme(
+            dark_mode=self._display.dark,
+            show_logo=False,
+            show_share_button=False,
+            control_width="small",
+        )
+
+    def tell(self, text: str) -> None:
+        """A sentence above the panel's inputs; empty to take it away."""
+        content = f"<div style='font-size:12px;padding:4px 8px'>{html.escape(text)}</div>"
+        if self._note.content != content:
+            self._note.content = content
+            self._note.visible = bool(text)
+
+    def hold(self, model: RobotModel) -> None:
+        """Put the handle on a robot that was just drawn."""
+        if self._handle is not None:
+            self._handle.remove()
+        self._handle = self.client.scene.add_icosphere(
+            HANDLE,
+            radius=1.0,
+            subdivisions=3,
+            color=colours.EFFECTOR,
+            opacity=0.1,
+            cast_shadow=False,
+            receive_shadow=False,
+            visible=bool(self._may_steer),
+        )
+        self._handle_scale = 0.0
+        self._handle.on_drag("left")(self._dragging.on_plane)
+        self._handle.on_drag("left", modifier="shift")(self._dragging.on_vertical)
+        self._apply_steering(model)
+
+    def set_steering(self, may_steer: bool, model: RobotModel) -> None:
+        """Whether this session may move the robot: others see the panel and cannot use it."""
+        if may_steer != self._may_steer:
+            self._may_steer = may_steer
+            self._apply_steering(model)
+
+    def fit_handle(self, effector: np.ndarray) -> None:
+        """Keep the handle large enough for a finger, from wherever this browser looks."""
+        camera = self.client.camera
+        distance = float(np.linalg.norm(np.asarray(camera.position) - effector))
+        smaller_side = min(camera.image_width, camera.image_height)
+        pixels = max(_LEAST_SHARE * smaller_side, _LEAST_PIXELS)
+        metres_per_pixel = 2.0 * math.tan(camera.fov / 2.0) * distance / camera.image_height
+        scale = pixels * metres_per_pixel
+        if self._handle is not None and not (
+            scale / _REFINE < self._handle_scale < scale * _REFINE
+        ):
+            self._handle_scale = scale
+            self._handle.scale = scale
+
+    def _apply_steering(self, model: RobotModel) -> None:
+        may_steer = bool(self._may_steer)
+        for handle in self._panel.steering:
+            per_client.set_enabled(self.client, handle, may_steer)
+        per_client.set_draggable(self.client, model.effector, BINDINGS if may_steer else [])
+        if self._handle is not None:
+            self._handle.visible = may_steer
+
+    def _add_toggles(self) -> list[GuiCheckboxHandle]:
+        toggles: list[GuiCheckboxHandle] = []
+        with self._panel.display_folder:
+            for choice, title in _TITLES.items():
+                toggle = self.client.gui.add_checkbox(title, getattr(self._display, choice))
+                toggle.on_update(self._on_toggle(choice))
+                self._controls.add_toggle(toggle)
+                toggles.append(toggle)
+        return toggles
+
+    def _on_toggle(
+        self, choice: str
+    ) -> Callable[[GuiEvent[GuiCheckboxHandle]], Coroutine[None, None, None]]:
+        async def update(event: GuiEvent[GuiCheckboxHandle]) -> None:
+            setattr(self._display, choice, event.target.value)
+            self._apply(choice)
+
+        return update
+
+    def _apply(self, choice: str) -> None:
+        wanted = getattr(self._display, choice)
+        if choice in _LAYERS:
+            per_client.set_visible(self.client, _LAYERS[choice], wanted)
+        elif choice == "shadows":
+            self.client.scene.configure_default_lights(cast_shadow=wanted)
+        else:
+            self.client.scene.configure_environment_map("studio" if wanted else None)
