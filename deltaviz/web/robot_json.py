@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, is_dataclass
 from typing import Any
 
+from deltaviz.mechanism import Mechanism
 from deltaviz.robots import Robot, preset_names
 
 
@@ -17,7 +18,7 @@ def robot_json(robot: Robot) -> dict[str, Any]:
         "name": robot.name,
         "kind": robot.kind,
         "joints": robot.joint_count,
-        "geometry": {**asdict(robot.mechanism), "tool_offset": list(robot.tool_offset)},
+        "geometry": {**_geometry(robot.mechanism), "tool_offset": list(robot.tool_offset)},
         "workspace": {
             axis: _plain(getattr(robot.workspace, axis)) for axis in ("x", "y", "z", "radius")
         },
@@ -25,6 +26,7 @@ def robot_json(robot: Robot) -> dict[str, Any]:
             "joint": {
                 "min_deg": _degrees(robot.joints.min),
                 "max_deg": _degrees(robot.joints.max),
+                "ball_joint_max_deg": _degrees([robot.joints.ball_joint_max])[0],
                 "velocity_deg_s": _degrees(joint.velocity),
                 "acceleration_deg_s2": _degrees(joint.acceleration),
                 "unhomed_velocity_deg_s": _degrees(joint.unhomed_velocity),
@@ -37,6 +39,13 @@ def robot_json(robot: Robot) -> dict[str, Any]:
         },
         "presets": sorted({*preset_names(), robot.name}),
     }
+
+
+def _geometry(mechanism: Mechanism) -> dict[str, Any]:
+    """The mechanism's own fields, which are in mm and degrees as in a robot file."""
+    if is_dataclass(mechanism) and not isinstance(mechanism, type):
+        return asdict(mechanism)
+    return {}
 
 
 def _plain(value: float | Sequence[float] | None) -> float | list[float] | None:
