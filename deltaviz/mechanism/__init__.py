@@ -1,1 +1,16 @@
+"""The pure mathematics of each kind of robot: inverse, forward, Jacobian, margins."""
 
+from deltaviz.mechanism.geometry import GeometryError
+from deltaviz.mechanism.kernel import Kernel
+from deltaviz.mechanism.margin import Margin, MarginKind
+from deltaviz.mechanism.mechanism import Mechanism
+from deltaviz.mechanism.rotary_delta import RotaryDelta
+
+__all__ = [
+    "GeometryError",
+    "Kernel",
+    "Margin",
+    "MarginKind",
+    "Mechanism",
+    "RotaryDelta",
+]

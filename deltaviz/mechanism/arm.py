@@ -1,0 +1,80 @@
+"""One arm of a rotary delta, seen in its own frame: out from the base, sideways, up.
+
+With the effector's radius taken off the base's, the three forearms end in one point P; P's
+outward distance from the motor axis is `p`, its sideways distance from the arm's plane `v`.
+The elbow runs on a circle of radius L in that plane, where its distance l from P gives
+
+    K = (p² + v² + z² + L² - l²) / 2L,   ρ² = p² + z²,   q = √(ρ² - K²)
+    θ = atan2(-z K - p q, p K - z q)      (elbow outside; with -q: inside)
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from deltaviz.mechanism.arrays import Array
+
+EPS = float(np.finfo(np.float64).eps)
+EDGE_ROUNDING = 4 * EPS  # of ρ² - K², relative to the sum of the squares that make K
+
+
+@dataclass(frozen=True, slots=True)
+class Arm:
+    """`offset` is base radius minus effector radius, `azimuth` in rad, lengths in mm."""
+
+    offset: float
+    upper_arm: float
+    forearm: float
+    azimuth: float
+
+    @property
+    def cos(self) -> float:
+        return math.cos(self.azimuth)
+
+    @property
+    def sin(self) -> float:
+        return math.sin(self.azimuth)
+
+    def plane(self, x: Array, y: Array) -> tuple[Array, Array]:
+        """(p, v) of points in the base's frame."""
+        return x * self.cos + y * self.sin - self.offset, y * self.cos - x * self.sin
+
+    def angle(self, x: Array, y: Array, z: Array, *, clamp: bool = False) -> Array:
+        """Angle with the elbow outside; NaN out of reach, or with `clamp` the nearest one."""
+        p, v = self.plane(x, y)
+        k, edge = self._k(p, v, z)
+        square = p * p + z * z - k * k
+        if clamp:
+            square = np.maximum(square, 0.0)
+        else:
+            square = np.where((square < 0) & (square >= -edge), 0.0, square)
+        q = np.sqrt(square)
+        return np.arctan2(-z * k - p * q, p * k - z * q)
+
+    def discriminant(self, x: Array, y: Array, z: Array) -> Array:
+        """1 - K²/ρ²: the squared sine of the angle between upper arm and shoulder-to-P.
+
+        Zero where the arm is straight or folded, negative out of reach.
+        """
+        p, v = self.plane(x, y)
+        k, _ = self._k(p, v, z)
+        square = np.maximum(p * p + z * z, (1e-3 * self.upper_arm) ** 2)
+        return 1.0 - k * k / square
+
+    def miss(self, x: Array, y: Array, z: Array) -> tuple[Array, Array]:
+        """(too far, too near) in mm: by how much the forearm is too short, or too long."""
+        p, v = self.plane(x, y)
+        rho = np.hypot(p, z)
+        nearest = np.hypot(rho - self.upper_arm, v)
+        farthest = np.hypot(rho + self.upper_arm, v)
+        return nearest - self.forearm, self.forearm - farthest
+
+    def _k(self, p: Array, v: Array, z: Array) -> tuple[Array, Array]:
+        point = p * p + v * v + z * z
+        upper, fore = self.upper_arm**2, self.forearm**2
+        k = (point + (upper - fore)) / (2 * self.upper_arm)
+        edge = EDGE_ROUNDING * np.abs(k) * (point + upper + fore) / self.upper_arm
+        return k, edge

@@ -1,0 +1,37 @@
+"""Names of the margins: how far a pose is from each thing that could forbid it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+
+class MarginKind(Enum):
+    TYPE_1 = "type 1 singularity"  # an arm straight or folded: the edge of reach
+    TYPE_2 = "type 2 singularity"  # the forearms can no longer hold the effector's position
+    PARALLELOGRAM = "parallelogram singularity"  # they can no longer hold its orientation
+    BALL_JOINT = "ball joint"
+    JOINT_MIN = "lower joint limit"
+    JOINT_MAX = "upper joint limit"
+    Z_MIN = "lower end of the workspace"
+    Z_MAX = "upper end of the workspace"
+    RADIUS = "radius of the workspace"
+    X_MIN = "lower X end of the workspace"
+    X_MAX = "upper X end of the workspace"
+    Y_MIN = "lower Y end of the workspace"
+    Y_MAX = "upper Y end of the workspace"
+
+
+@dataclass(frozen=True, slots=True)
+class Margin:
+    """What one column of `margins` tells. `arm` is 0-based, or None where no single arm is meant.
+
+    The numbers are signed, at least 0 where legal, smooth near 0, and fall by about 1 per mm
+    of travel there.
+    """
+
+    kind: MarginKind
+    arm: int | None = None
+
+    def __str__(self) -> str:
+        return self.kind.value if self.arm is None else f"arm {self.arm + 1} {self.kind.value}"

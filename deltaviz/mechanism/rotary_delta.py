@@ -1,0 +1,296 @@
+"""The rotary delta: three motors on the base, three parallelograms, one translating effector."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from deltaviz.mechanism.arm import EPS, Arm
+from deltaviz.mechanism.arrays import Array, rows
+from deltaviz.mechanism.bounds import Bounds
+from deltaviz.mechanism.geometry import GeometryError, per_arm
+from deltaviz.mechanism.kernel import Kernel
+from deltaviz.mechanism.margin import Margin, MarginKind
+from deltaviz.mechanism.stiffness import TYPE_1_RESERVE, TYPE_2_RESERVE, stiffness, unit
+
+UNDETERMINED = 1e-12  # elbow centres whose triangle is smaller than this, in squared forearms
+LEAST_SEPARATION = math.radians(1.0)  # of two arms' azimuths
+
+
+@dataclass(frozen=True, init=False)
+class RotaryDelta:
+    """Geometry of a rotary delta; all lengths in mm, one number per arm.
+
+    `base_radius`: centre to motor axis. `effector_radius`: effector's centre to the forearm's
+    joint. `azimuths_deg`: directions of the motors, counter-clockwise from +x.
+    """
+
+    base_radius: tuple[float, ...]
+    effector_radius: tuple[float, ...]
+    upper_arm: tuple[float, ...]
+    forearm: tuple[float, ...]
+    azimuths_deg: tuple[float, ...]
+
+    joints: ClassVar[int] = 3
+    margin_names: ClassVar[tuple[Margin, ...]] = (
+        *(Margin(MarginKind.TYPE_1, arm) for arm in range(3)),
+        Margin(MarginKind.TYPE_2),
+        Margin(MarginKind.PARALLELOGRAM),
+    )
+
+    def __init__(
+        self,
+        *,
+        base_radius: float | Sequence[float],
+        effector_radius: float | Sequence[float],
+        upper_arm: float | Sequence[float],
+        forearm: float | Sequence[float],
+        azimuths_deg: Sequence[float] = (0.0, 120.0, 240.0),
+    ) -> None:
+        """Each length is one number for all arms or one per arm.
+
+        Raises GeometryError, naming the field, its value and the rule.
+        """
+        fields = {
+            "base_radius": per_arm("base_radius", base_radius, arms=3, above=0.0),
+            "effector_radius": per_arm("effector_radius", effector_radius, arms=3, above=0.0),
+            "upper_arm": per_arm("upper_arm", upper_arm, arms=3, above=0.0),
+            "forearm": per_arm("forearm", forearm, arms=3, above=0.0),
+            "azimuths_deg": per_arm("azimuths_deg", azimuths_deg, arms=3),
+        }
+        for name, value in fields.items():
+            object.__setattr__(self, name, value)
+        self._check()
+
+    @classmethod
+    def from_sides(
+        cls,
+        *,
+        f: float,
+        e: float,
+        upper_arm: float | Sequence[float],
+        forearm: float | Sequence[float],
+        azimuths_deg: Sequence[float] = (-90.0, 30.0, 150.0),
+    ) -> Self:
+        """From the sides of the base's and the effector's triangle (f and e, Trossen 2009)."""
+        return cls(
+            base_radius=per_arm("f", f, arms=3, above=0.0)[0] / (2 * math.sqrt(3)),
+            effector_radius=per_arm("e", e, arms=3, above=0.0)[0] / (2 * math.sqrt(3)),
+            upper_arm=upper_arm,
+            forearm=forearm,
+            azimuths_deg=azimuths_deg,
+        )
+
+    @cached_property
+    def arms(self) -> tuple[Arm, ...]:
+        lengths = zip(
+            self.base_radius,
+            self.effector_radius,
+            self.upper_arm,
+            self.forearm,
+            self.azimuths_deg,
+            strict=True,
+        )
+        return tuple(Arm(R - r, L, fore, math.radians(azimuth)) for R, r, L, fore, azimuth in lengths)
+
+    @cached_property
+    def handedness(self) -> float:
+        """+1 if the arms stand counter-clockwise in their order, else -1."""
+        a, b, c = (arm.azimuth for arm in self.arms)
+        return math.copysign(1.0, math.sin(b - a) + math.sin(c - b) + math.sin(a - c))
+
+    def inverse(self, xyz: ArrayLike) -> Array:
+        """Joint angles of effector positions, (..., 3) mm to (..., 3) rad, elbows outside.
+
+        A row is NaN where any arm cannot reach. At the very edge of reach, where rounding
+        decides, the edge's own angle is returned; it is determined only to about 3e-8 rad.
+        """
+        theta = self._angles(rows(xyz, 3, "xyz"), clamp=False)
+        theta[np.isnan(theta).any(axis=-1)] = np.nan
+        return theta
+
+    def nearest_angles(self, xyz: ArrayLike) -> Array:
+        """As `inverse`, but an arm that cannot reach gets the angle that comes nearest."""
+        return self._angles(rows(xyz, 3, "xyz"), clamp=True)
+
+    def forward(self, theta: ArrayLike) -> Array:
+        """Effector positions of joint angles, (..., 3) rad to (..., 3) mm.
+
+        Trilateration on the elbow centres moved inward by the effector's radius; of the two
+        solutions the working one (det Jx < 0 with arms counter-clockwise: below the elbows).
+        A row is NaN where the forearms cannot meet, or would meet in more than two points.
+        """
+        angles = rows(theta, 3, "theta")
+        with np.errstate(all="ignore"):
+            return self._meet(self.elbows(angles))
+
+    def jacobian(self, theta: ArrayLike) -> Array:
+        """d xyz / d theta, (..., 3) rad to (..., 3, 3) mm/rad; NaN where `forward` is, and at
+        type 2 singularities."""
+        angles = rows(theta, 3, "theta")
+        with np.errstate(all="ignore"):
+            elbows = self.elbows(angles)
+            forearms = self._meet(elbows)[..., None, :] - elbows
+            jq = self._jq(forearms, angles)
+            adjugate = _cross_rows(forearms)
+            det = (forearms[..., 0, :] * adjugate[..., 0, :]).sum(axis=-1)
+            det = np.where(det == 0.0, np.nan, det)
+            return np.swapaxes(adjugate * (jq / det[..., None])[..., None], -1, -2)
+
+    def elbows(self, theta: ArrayLike) -> Array:
+        """Elbow centres moved inward by the effector's radius, (..., 3) rad to (..., 3, 3) mm."""
+        angles = rows(theta, 3, "theta")
+        out = np.empty((*angles.shape, 3))
+        for i, arm in enumerate(self.arms):
+            with np.errstate(invalid="ignore"):
+                radius = arm.offset + arm.upper_arm * np.cos(angles[..., i])
+                out[..., i, 2] = -arm.upper_arm * np.sin(angles[..., i])
+            out[..., i, 0] = radius * arm.cos
+            out[..., i, 1] = radius * arm.sin
+        return out
+
+    def jq(self, xyz: ArrayLike, theta: ArrayLike) -> Array:
+        """(..., 3) mm²/rad: positive with the elbow outside, 0 at type 1 singularities."""
+        angles = rows(theta, 3, "theta")
+        return self._jq(rows(xyz, 3, "xyz")[..., None, :] - self.elbows(angles), angles)
+
+    def det_jx(self, xyz: ArrayLike, theta: ArrayLike) -> Array:
+        """(...) mm³: determinant of the forearm vectors, 0 at type 2 singularities, negative
+        in the working assembly of arms that stand counter-clockwise."""
+        forearms = rows(xyz, 3, "xyz")[..., None, :] - self.elbows(theta)
+        return (forearms[..., 0, :] * _cross_rows(forearms)[..., 0, :]).sum(axis=-1)
+
+    def couples(self, xyz: ArrayLike, theta: ArrayLike) -> Array:
+        """(..., 3, 3): t_i x S_i/|S_i|, the moments by which the parallelograms hold the
+        effector's orientation; they do so unless these become linearly dependent."""
+        forearms = unit(rows(xyz, 3, "xyz")[..., None, :] - self.elbows(theta))
+        return np.cross(np.array([(-arm.sin, arm.cos, 0.0) for arm in self.arms]), forearms)
+
+    def sideways(self, xyz: ArrayLike) -> Array:
+        """(..., 3) mm: how far each forearm leans out of its arm's plane; its ball joints
+        stand at asin(sideways / forearm)."""
+        points = rows(xyz, 3, "xyz")
+        planes = [arm.plane(points[..., 0], points[..., 1])[1] for arm in self.arms]
+        return np.stack(planes, axis=-1)
+
+    def misses(self, xyz: ArrayLike) -> tuple[Array, Array]:
+        """(too far, too near), each (..., 3) mm: how far each arm is from reaching; negative
+        where it reaches."""
+        points = rows(xyz, 3, "xyz")
+        x, y, z = points[..., 0], points[..., 1], points[..., 2]
+        each = [arm.miss(x, y, z) for arm in self.arms]
+        return (
+            np.stack([far for far, _ in each], axis=-1),
+            np.stack([near for _, near in each], axis=-1),
+        )
+
+    def margins(self, xyz: ArrayLike, theta: ArrayLike) -> Array:
+        """(..., 5) as `margin_names`; NaN angles are replaced by those nearest to reaching.
+
+        The discriminants are normalised, lowered by their reserve (see `stiffness`) and scaled
+        to about 1 per mm. An arm whose elbow is inside is beyond its type 1 margin.
+        """
+        points = rows(xyz, 3, "xyz")
+        angles = rows(theta, 3, "theta")
+        angles = np.where(np.isnan(angles), self.nearest_angles(points), angles)
+        points, angles = np.broadcast_arrays(points, angles)
+        x, y, z = points[..., 0], points[..., 1], points[..., 2]
+        forearms = points[..., None, :] - self.elbows(angles)
+        outside = self._jq(forearms, angles) >= 0.0
+        columns: list[Array] = []
+        for i, arm in enumerate(self.arms):
+            value = arm.discriminant(x, y, z)
+            value = np.where(outside[..., i], value, -np.abs(value))
+            columns.append((value - TYPE_1_RESERVE) * self.type_1_scale[i])
+        for held in (-stiffness(unit(forearms)), stiffness(self.couples(points, angles))):
+            columns.append((self.handedness * held - TYPE_2_RESERVE) * self.type_2_scale)
+        return np.stack(columns, axis=-1)
+
+    def kernel(self, bounds: Bounds) -> Kernel:
+        """Compiled functions for the tool tip; numba is imported here, and not before."""
+        from deltaviz.mechanism.rotary_delta_kernel import RotaryDeltaKernel
+
+        return RotaryDeltaKernel(self, bounds)
+
+    @property
+    def joint_scale(self) -> tuple[float, ...]:
+        """mm of travel per rad of each joint, about: the upper arms."""
+        return self.upper_arm
+
+    @cached_property
+    def type_1_scale(self) -> tuple[float, ...]:
+        """mm per unit of 1 - K²/ρ² at the outer edge of reach: L(L + l)/2l."""
+        return tuple(
+            arm.upper_arm * (arm.upper_arm + arm.forearm) / (2 * arm.forearm) for arm in self.arms
+        )
+
+    @cached_property
+    def type_2_scale(self) -> float:
+        """mm per unit of stiffness where the forearms lie flat: l/√3."""
+        return sum(self.forearm) / 3 / math.sqrt(3)
+
+    def _angles(self, points: Array, *, clamp: bool) -> Array:
+        x, y, z = points[..., 0], points[..., 1], points[..., 2]
+        theta = np.empty(points.shape)
+        with np.errstate(all="ignore"):
+            for i, arm in enumerate(self.arms):
+                theta[..., i] = arm.angle(x, y, z, clamp=clamp)
+        return theta
+
+    def _meet(self, elbows: Array) -> Array:
+        first = elbows[..., 0, :]
+        a = elbows[..., 1, :] - first
+        b = elbows[..., 2, :] - first
+        n = np.cross(a, b)
+        square = _dot(n, n)
+        l1, l2, l3 = (fore * fore for fore in self.forearm)
+        along_a = (_dot(a, a) + (l1 - l2)) / 2
+        along_b = (_dot(b, b) + (l1 - l3)) / 2
+        w = (along_a * np.cross(b, n) + along_b * np.cross(n, a)) / square
+        height = l1 - _dot(w, w)
+        height = np.where((height < 0) & (height >= -16 * EPS * l1), 0.0, height)
+        height = np.where(square > (UNDETERMINED * l1) ** 2, height, np.nan)
+        return first + w - n * (self.handedness * np.sqrt(height / square))
+
+    def _jq(self, forearms: Array, theta: Array) -> Array:
+        out = np.empty(np.broadcast_shapes(forearms.shape[:-1], theta.shape))
+        for i, arm in enumerate(self.arms):
+            outward = forearms[..., i, 0] * arm.cos + forearms[..., i, 1] * arm.sin
+            turned = outward * np.sin(theta[..., i]) + forearms[..., i, 2] * np.cos(theta[..., i])
+            out[..., i] = -arm.upper_arm * turned
+        return out
+
+    def _check(self) -> None:
+        for i, arm in enumerate(self.arms):
+            if abs(arm.offset) >= arm.upper_arm + arm.forearm:
+                raise GeometryError(
+                    "base_radius",
+                    self.base_radius[i],
+                    "must differ from effector_radius by less than upper_arm + forearm "
+                    f"({arm.upper_arm + arm.forearm:g}): arm {i + 1} cannot close",
+                )
+            for other in self.arms[:i]:
+                apart = abs(math.remainder(arm.azimuth - other.azimuth, 2 * math.pi))
+                if apart < LEAST_SEPARATION:
+                    raise GeometryError(
+                        "azimuths_deg",
+                        list(self.azimuths_deg),
+                        "must be three directions at least 1° apart",
+                    )
+
+
+def _dot(a: Array, b: Array) -> Array:
+    return (a * b).sum(axis=-1, keepdims=True)
+
+
+def _cross_rows(matrix: Array) -> Array:
+    """(..., 3, 3) to the cross products of its rows: 2 x 3, 3 x 1, 1 x 2."""
+    one, two, three = matrix[..., 0, :], matrix[..., 1, :], matrix[..., 2, :]
+    pairs = (np.cross(two, three), np.cross(three, one), np.cross(one, two))
+    return np.stack(pairs, axis=-2)

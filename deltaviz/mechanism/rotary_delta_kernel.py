@@ -1,0 +1,74 @@
+"""A rotary delta's compiled functions, bound to its numbers."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from deltaviz.mechanism import rotary_delta_compiled as compiled
+from deltaviz.mechanism.arrays import Array
+from deltaviz.mechanism.bounds import ROUNDING, Bounds
+
+if TYPE_CHECKING:
+    from deltaviz.mechanism.rotary_delta import RotaryDelta
+
+_functions: Any = compiled  # numba's dispatchers have no useful types
+
+
+class RotaryDeltaKernel:
+    """See `Kernel`."""
+
+    def __init__(self, mechanism: RotaryDelta, bounds: Bounds) -> None:
+        self._g = _geometry(mechanism, bounds)
+        self._limits = _limits(mechanism, bounds)
+        boxes = sum(2 for box in (bounds.z, bounds.x, bounds.y) if box is not None)
+        self._columns = 14 + boxes + (bounds.radius is not None)
+
+    def inverse(self, xyz: Array) -> Array:
+        return _functions.inverse(xyz, self._g)
+
+    def forward(self, theta: Array) -> Array:
+        return _functions.forward(theta, self._g)
+
+    def margins(self, xyz: Array, theta: Array) -> Array:
+        return _functions.margins(xyz, theta, self._g, self._limits, self._columns)
+
+    def joint_velocity(self, xyz: Array, theta: Array, velocity: Array) -> Array:
+        return _functions.joint_velocity(xyz, theta, velocity, self._g)
+
+    def tip_velocity(self, xyz: Array, theta: Array, velocity: Array) -> Array:
+        return _functions.tip_velocity(xyz, theta, velocity, self._g)
+
+    def warm_up(self) -> None:
+        theta = np.zeros((1, 3))
+        xyz = self.forward(theta)
+        self.margins(xyz, self.inverse(xyz))
+        self.tip_velocity(xyz, theta, self.joint_velocity(xyz, theta, theta))
+
+
+def _geometry(mechanism: RotaryDelta, bounds: Bounds) -> Array:
+    rows = [(arm.offset, arm.upper_arm, arm.forearm, arm.cos, arm.sin) for arm in mechanism.arms]
+    return np.array([*rows, (*bounds.tool_offset, mechanism.handedness, 0.0)])
+
+
+def _limits(mechanism: RotaryDelta, bounds: Bounds) -> Array:
+    out = np.full(compiled.LIMITS, math.nan)
+    sideways = math.sin(bounds.ball_joint_max)
+    for start, values in (
+        (compiled.TYPE_1_SCALE, mechanism.type_1_scale),
+        (compiled.JOINT_SCALE, mechanism.joint_scale),
+        (compiled.SIDEWAYS_MAX, [fore * sideways for fore in mechanism.forearm]),
+        (compiled.JOINT_MIN, bounds.joint_min),
+        (compiled.JOINT_MAX, bounds.joint_max),
+    ):
+        out[start : start + 3] = values
+    out[compiled.TYPE_2_SCALE] = mechanism.type_2_scale
+    out[compiled.ROUNDING] = ROUNDING
+    for axis, box in enumerate((bounds.z, bounds.x, bounds.y)):
+        if box is not None:
+            out[compiled.BOX + 2 * axis : compiled.BOX + 2 * axis + 2] = box
+    if bounds.radius is not None:
+        out[compiled.RADIUS] = bounds.radius
+    return out

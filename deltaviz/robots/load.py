@@ -1,0 +1,113 @@
+"""Reads a robot: a preset by its name, or a person's own file by its path."""
+
+from __future__ import annotations
+
+import difflib
+import os
+import tomllib
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from deltaviz.robots.errors import RobotFileError
+from deltaviz.robots.presets import preset_names, preset_text
+from deltaviz.robots.source_lines import key_lines, line_of
+
+if TYPE_CHECKING:
+    from pydantic import ValidationError
+
+    from deltaviz.robots.robot import Robot
+
+
+def load_robot(robot: str | os.PathLike[str]) -> Robot:
+    """A preset by name, or a robot file by its path (anything with a separator or ".toml").
+
+    Raises RobotFileError, which names the field, its value, the line and what would be legal.
+    """
+    name = os.fspath(robot)
+    if _is_path(name) or not isinstance(robot, str):
+        return parse_robot(_read(name), source=name)
+    if name not in preset_names():
+        raise RobotFileError(_unknown_preset(name))
+    return parse_robot(preset_text(name), source=f"preset {name}")
+
+
+def parse_robot(text: str, *, source: str = "robot file") -> Robot:
+    """A robot from the text of a robot file; `source` names it in errors."""
+    from pydantic import ValidationError
+
+    from deltaviz.robots.build import Inconsistent, build
+    from deltaviz.robots.schema import RobotFile
+
+    try:
+        data = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise RobotFileError(f"{source}: not valid TOML: {error}") from error
+    lines = key_lines(text)
+    try:
+        return build(RobotFile.model_validate(data))
+    except ValidationError as error:
+        problems = _problems(error, RobotFile)
+    except Inconsistent as error:
+        problems = [(error.field, str(error))]
+    located = sorted((line_of(lines, field) or 0, text) for field, text in problems)
+    raise RobotFileError(
+        "\n".join(
+            f"{source}, line {line}: {text}" if line else f"{source}: {text}"
+            for line, text in located
+        )
+    )
+
+
+def _is_path(name: str) -> bool:
+    separators = [separator for separator in (os.sep, os.altsep) if separator]
+    return name.endswith(".toml") or any(separator in name for separator in separators)
+
+
+def _read(path: str) -> str:
+    try:
+        return Path(path).read_text(encoding="utf-8")
+    except OSError as error:
+        raise RobotFileError(f"{path}: {error.strerror or error}") from error
+    except UnicodeDecodeError as error:
+        raise RobotFileError(f"{path}: not UTF-8 text") from error
+
+
+def _unknown_preset(name: str) -> str:
+    near = difflib.get_close_matches(name.lower(), preset_names(), n=1)
+    hint = f"did you mean {near[0]!r}? " if near else ""
+    return (
+        f"No preset is named {name!r}; {hint}Presets: {', '.join(preset_names())}. "
+        "A path to a robot file must end in .toml or contain a separator."
+    )
+
+
+def _problems(error: ValidationError, model: Any) -> list[tuple[str, str]]:
+    """(field, what is wrong with it) of each problem that pydantic found."""
+    found: list[tuple[str, str]] = []
+    for problem in error.errors():
+        parts = [str(part) for part in problem["loc"]]
+        field = ".".join(parts)
+        kind, value = problem["type"], problem["input"]
+        if kind == "missing":
+            text = f"{field} is missing"
+        elif kind == "extra_forbidden":
+            text = f"{field} is not a known field{_nearest(parts, model)}"
+        elif kind in ("model_type", "model_attributes_type"):
+            text = f"{field} = {value!r}: must be a section, [{field}]"
+        elif kind == "literal_error":
+            text = f"{field} = {value!r}: must be {problem['ctx']['expected']}"
+        else:
+            text = f"{field} = {value!r}: {problem['msg'].removeprefix('Value error, ')}"
+        found.append((field, text))
+    return found
+
+
+def _nearest(parts: list[str], model: Any) -> str:
+    """The known fields beside a misspelt one, the nearest of them first in mind."""
+    for part in parts[:-1]:
+        model = model.model_fields[part].annotation
+    known = list(model.model_fields)
+    near = difflib.get_close_matches(parts[-1], known, n=1)
+    if near:
+        return f"; did you mean {near[0]!r}?"
+    return f"; known here: {', '.join(known)}"

@@ -1,0 +1,221 @@
+"""The robot: what it is built from, what limits it, what drives it. Immutable values."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from deltaviz.mechanism.arrays import Array, rows
+from deltaviz.mechanism.bounds import ROUNDING, Bounds
+from deltaviz.mechanism.kernel import Kernel
+from deltaviz.mechanism.margin import Margin, MarginKind
+from deltaviz.mechanism.mechanism import Mechanism
+
+if TYPE_CHECKING:
+    from deltaviz.robots.reach import Reach
+
+
+@dataclass(frozen=True, slots=True)
+class Joints:
+    """Angles in rad, one per joint; `ball_joint_max` is the same for all forearms."""
+
+    min: tuple[float, ...]
+    max: tuple[float, ...]
+    ball_joint_max: float
+
+
+@dataclass(frozen=True, slots=True)
+class Workspace:
+    """Where the tool tip must stay, mm: a height, and a cylinder or a box around the centre."""
+
+    z: tuple[float, float]
+    radius: float | None = None
+    x: tuple[float, float] | None = None
+    y: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class JointMotion:
+    """rad/s and rad/s², one per joint."""
+
+    velocity: tuple[float, ...]
+    acceleration: tuple[float, ...]
+    unhomed_velocity: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class CartesianMotion:
+    """Norms of the tool tip's motion: mm/s, mm/s², mm/s³."""
+
+    velocity: float
+    acceleration: float
+    jerk: float
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    joint: JointMotion
+    cartesian: CartesianMotion
+
+
+class DriveKind(Enum):
+    STEP_DIR = "step_dir"
+    SERVO = "servo"  # pulse-width servos: no board drives them yet, only the simulated one
+
+
+@dataclass(frozen=True, slots=True)
+class Drive:
+    """`microsteps_per_rad` of the arm's own angle; for a servo, its smallest steps.
+
+    `full_steps`, `microsteps`, `driver` and `enable_active` are None for a servo.
+    """
+
+    kind: DriveKind
+    microsteps_per_rad: tuple[float, ...]
+    invert: tuple[bool, ...]
+    gear: tuple[float, float]
+    full_steps: int | None
+    microsteps: int | None
+    driver: str | None
+    enable_active: str | None
+
+    @property
+    def simulation_only(self) -> bool:
+        return self.kind is DriveKind.SERVO
+
+
+@dataclass(frozen=True, slots=True)
+class Homing:
+    """`direction` is the sign of the joint's motion towards its switch (arms up: -1).
+
+    Angles in rad, speeds in rad/s; `switch` and `ready` have one entry per joint.
+    """
+
+    direction: int
+    switch: tuple[float, ...]
+    switch_active: str
+    fast: float
+    slow: float
+    backoff: float
+    max_travel: float
+    together: bool
+    ready: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Robot:
+    """Positions are the tool tip's: the tool offset is applied here and nowhere else."""
+
+    name: str
+    kind: str
+    mechanism: Mechanism
+    tool_offset: tuple[float, ...]
+    joints: Joints
+    workspace: Workspace
+    limits: Limits
+    drive: Drive
+    homing: Homing
+
+    @property
+    def joint_count(self) -> int:
+        return self.mechanism.joints
+
+    def inverse(self, xyz: ArrayLike) -> Array:
+        """Joint angles (..., n) rad of tool tip positions (..., d) mm; NaN rows out of reach."""
+        return self.mechanism.inverse(self._centre(xyz))
+
+    def forward(self, theta: ArrayLike) -> Array:
+        """Tool tip positions (..., d) mm of joint angles (..., n) rad; NaN where impossible."""
+        return self.mechanism.forward(theta) + np.asarray(self.tool_offset)
+
+    def jacobian(self, theta: ArrayLike) -> Array:
+        """d xyz / d theta, (..., d, n) mm/rad."""
+        return self.mechanism.jacobian(theta)
+
+    @cached_property
+    def bounds(self) -> Bounds:
+        return Bounds(
+            tool_offset=self.tool_offset,
+            joint_min=self.joints.min,
+            joint_max=self.joints.max,
+            ball_joint_max=self.joints.ball_joint_max,
+            z=self.workspace.z,
+            x=self.workspace.x,
+            y=self.workspace.y,
+            radius=self.workspace.radius,
+        )
+
+    @cached_property
+    def kernel(self) -> Kernel:
+        """Compiled batch functions for the control loop; the first use imports numba."""
+        return self.mechanism.kernel(self.bounds)
+
+    @cached_property
+    def margin_names(self) -> tuple[Margin, ...]:
+        """What each column of `margins` tells."""
+        arms = range(self.joint_count)
+        return (
+            *self.mechanism.margin_names,
+            *(Margin(MarginKind.BALL_JOINT, arm) for arm, _ in enumerate(self._sideways_max)),
+            *(Margin(MarginKind.JOINT_MIN, arm) for arm in arms),
+            *(Margin(MarginKind.JOINT_MAX, arm) for arm in arms),
+            *(Margin(kind) for axis in self._box for kind in axis[1]),
+            *([Margin(MarginKind.RADIUS)] if self.workspace.radius is not None else []),
+        )
+
+    def margins(self, xyz: ArrayLike, theta: ArrayLike) -> Array:
+        """(..., m) as `margin_names`: a pose (tip `xyz` mm, its angles `theta` rad) is legal
+        where all are at least 0. NaN angles are replaced by those nearest to reaching, so the
+        margins are finite wherever `xyz` is."""
+        tip = rows(xyz, len(self.tool_offset), "xyz")
+        angles = rows(theta, self.joint_count, "theta")
+        tip, angles = np.broadcast_arrays(tip, angles) if tip.shape != angles.shape else (tip, angles)
+        centre = self._centre(tip)
+        angles = np.where(np.isnan(angles), self.mechanism.nearest_angles(centre), angles)
+        most = np.asarray(self._sideways_max)
+        scale = np.asarray(self.mechanism.joint_scale)
+        groups = [
+            self.mechanism.margins(centre, angles),
+            (most**2 - self.mechanism.sideways(centre) ** 2) / (2 * most),
+            (angles - np.asarray(self.joints.min)) * scale,
+            (np.asarray(self.joints.max) - angles) * scale,
+        ]
+        for (low, high), _, axis in self._box:
+            groups.append(np.stack([tip[..., axis] - low, high - tip[..., axis]], axis=-1))
+        radius = self.workspace.radius
+        if radius is not None:
+            square = (tip[..., :-1] ** 2).sum(axis=-1, keepdims=True)
+            groups.append((radius**2 - square) / (2 * radius))
+        return np.concatenate(groups, axis=-1) + ROUNDING
+
+    def reach(self, xyz: ArrayLike) -> Reach:
+        """Whether the tool tip may be at one point (d,) mm, and if not, why."""
+        from deltaviz.robots.reach import reach
+
+        return reach(self, xyz)
+
+    @cached_property
+    def _sideways_max(self) -> tuple[float, ...]:
+        width = self.mechanism.sideways(np.zeros(len(self.tool_offset))).shape[-1]
+        return tuple(
+            fore * float(np.sin(self.joints.ball_joint_max))
+            for fore in self.mechanism.forearm[:width]
+        )
+
+    @cached_property
+    def _box(self) -> tuple[tuple[tuple[float, float], tuple[MarginKind, MarginKind], int], ...]:
+        kinds = MarginKind
+        axes = (
+            (self.workspace.z, (kinds.Z_MIN, kinds.Z_MAX), -1),
+            (self.workspace.x, (kinds.X_MIN, kinds.X_MAX), 0),
+            (self.workspace.y, (kinds.Y_MIN, kinds.Y_MAX), 1),
+        )
+        return tuple((box, kind, axis) for box, kind, axis in axes if box is not None)
+
+    def _centre(self, xyz: ArrayLike) -> Array:
+        return rows(xyz, len(self.tool_offset), "xyz") - np.asarray(self.tool_offset)
