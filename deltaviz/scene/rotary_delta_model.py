@@ -12,7 +12,7 @@ from deltaviz.scene import colours, rotations, shapes
 from deltaviz.scene.delta_rig import DeltaDimensions, DeltaRig
 from deltaviz.scene.shapes import Shape
 
-_SIDEWAYS = rotations.about(0, np.float64(-math.pi / 2))  # turns +z to +y
+_SIDEWAYS = rotations.about(0, -math.pi / 2)  # turns +z to +y
 _SAME = 2e-4  # rad and, in the scene, mm: a target this near is where the robot is
 _UNKNOWN_OPACITY = 0.25
 _GHOST_OPACITY = 0.28
@@ -95,9 +95,9 @@ class RotaryDeltaModel:
         """Two barrels on the axis with the arm between them, hung from the plate."""
         d, unit = self._size, self._size.thickness
         barrel = shapes.cylinder(0.165 * unit, 0.12 * unit, 0.44 * unit, bevel=0.02 * unit)
-        both = barrel.turned(_SIDEWAYS) + barrel.turned(rotations.about(0, np.float64(math.pi / 2)))
+        both = barrel.turned(_SIDEWAYS) + barrel.turned(rotations.about(0, math.pi / 2))
         hanger = shapes.beam(0.16 * unit, (0.2 * unit, 0.22 * unit), (0.2 * unit, 0.3 * unit))
-        upright = hanger.turned(rotations.about(1, np.float64(-math.pi / 2)))
+        upright = hanger.turned(rotations.about(1, -math.pi / 2))
         sides = (upright.moved((0.0, s * 0.28 * unit, 0.1 * unit)) for s in (-1.0, 1.0))
         turned = rotations.about(2, d.azimuth[arm])
         return shapes.joined(both, *sides).turned(turned).moved(d.outward[arm] * d.base_radius[arm])
@@ -188,7 +188,7 @@ class RotaryDeltaModel:
         self._add_shade("effector/plate", shapes.plate(outline, hole, -half, half))
         for i, (upper_arm, forearm) in enumerate(zip(d.upper_arm, d.forearm, strict=True)):
             arm = shapes.cylinder(arm_radius, 0.0, float(upper_arm))
-            turned = arm.turned(rotations.about(1, np.float64(math.pi / 2)))
+            turned = arm.turned(rotations.about(1, math.pi / 2))
             self._add_shade(f"arm{i}/beam", turned)
             rod = shapes.cylinder(rod_radius, -float(forearm), 0.0)
             for k in range(2):

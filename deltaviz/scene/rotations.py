@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from deltaviz.scene.units import Array
 
 
-def about(axis: int, angle: Array) -> Array:
+def about(axis: int, angle: ArrayLike) -> Array:
     """Rotation about a coordinate axis, (...) rad to (..., 4)."""
-    out = np.zeros((*np.shape(angle), 4))
-    out[..., 0] = np.cos(np.asarray(angle) / 2)
-    out[..., 1 + axis] = np.sin(np.asarray(angle) / 2)
+    half = np.asarray(angle, dtype=np.float64) / 2
+    out = np.zeros((*half.shape, 4))
+    out[..., 0] = np.cos(half)
+    out[..., 1 + axis] = np.sin(half)
     return out
 
 

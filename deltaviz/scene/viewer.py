@@ -100,7 +100,7 @@ class Viewer:
         """Put the handle on a robot that was just drawn."""
         if self._handle is not None:
             self._handle.remove()
-        self._handle = self.client.scene.add_icosphere(
+        handle = self.client.scene.add_icosphere(
             HANDLE,
             radius=1.0,
             subdivisions=3,
@@ -110,9 +110,9 @@ class Viewer:
             receive_shadow=False,
             visible=bool(self._may_steer),
         )
-        self._handle_scale = 0.0
-        self._handle.on_drag("left")(self._dragging.on_plane)
-        self._handle.on_drag("left", modifier="shift")(self._dragging.on_vertical)
+        handle.on_drag("left")(self._dragging.on_plane)
+        handle.on_drag("left", modifier="shift")(self._dragging.on_vertical)
+        self._handle, self._handle_scale = handle, 0.0
         self._apply_steering(model)
 
     def set_steering(self, may_steer: bool, model: RobotModel) -> None:

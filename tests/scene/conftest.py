@@ -1,0 +1,317 @@
+"""A machine that does at once what it is asked, a web app on a free port, a browser."""
+
+from __future__ import annotations
+
+import dataclasses
+import socket
+import threading
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future
+from typing import Any
+
+import msgspec
+import numpy as np
+import pytest
+import uvicorn
+import viser
+import zstandard
+from fastapi import FastAPI
+from playwright.sync_api import Browser, sync_playwright
+from websockets.sync.client import ClientConnection, connect
+
+from deltaviz.machine.intent import (
+    Accepted,
+    Answer,
+    DragTo,
+    FollowAngles,
+    FollowPoint,
+    Intent,
+    RefusalKind,
+    Refused,
+)
+from deltaviz.machine.mode import Mode
+from deltaviz.machine.snapshot import LinkStatus, Snapshot
+from deltaviz.mechanism import RotaryDelta
+from deltaviz.robots import Robot, load_robot
+from deltaviz.scene.view import Scene
+
+CHROMIUM = "/usr/bin/chromium"
+CHROMIUM_ARGS = [
+    "--no-sandbox",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--ignore-gpu-blocklist",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+]
+
+
+class FakeMachine:
+    """Takes every intent (or refuses every one) and is at once where it was told to be."""
+
+    def __init__(self, robot: Robot) -> None:
+        self.robot = robot
+        self.posted: list[Intent] = []
+        self.refusal: str | None = None
+        self.holder: str | None = None
+        self.follows = True
+        low, high = robot.workspace.z
+        self.snapshot = self._at((0.0, 0.0, (low + high) / 2))
+
+    def _at(self, xyz: tuple[float, ...], **changes: Any) -> Snapshot:
+        theta = tuple(float(angle) for angle in self.robot.inverse(xyz))
+        zeros = (0.0,) * len(theta)
+        snapshot = Snapshot(
+            at=time.monotonic(),
+            robot=self.robot.name,
+            mode=Mode.IDLE,
+            homed=True,
+            theta=theta,
+            xyz=xyz,
+            theta_speed=zeros,
+            xyz_speed=(0.0, 0.0, 0.0),
+            command_theta=theta,
+            command_xyz=xyz,
+            target_theta=theta,
+            target_xyz=xyz,
+            margins=(1.0,) * len(theta),
+            held_by=(),
+            link=LinkStatus(id="sim", connected=True, age=0.0),
+            holder=self.holder,
+            stop_reason=None,
+            fault=None,
+            override=1.0,
+            next_step=None,
+            board_time=0.0,
+            underruns=0,
+            counts=None,
+        )
+        return dataclasses.replace(snapshot, **changes)
+
+    def be_at(self, xyz: tuple[float, ...], **changes: Any) -> None:
+        self.snapshot = self._at(xyz, **changes)
+
+    def be_held_by(self, holder: str | None) -> None:
+        self.holder = holder
+        self.snapshot = dataclasses.replace(self.snapshot, holder=holder)
+
+    def become(self, robot: Robot) -> None:
+        self.robot = robot
+        self.be_at((0.0, 0.0, sum(robot.workspace.z) / 2))
+
+    def of(self, kind: type) -> list[Any]:
+        return [intent for intent in self.posted if isinstance(intent, kind)]
+
+    def post(self, intent: Intent) -> Future[Answer]:
+        self.posted.append(intent)
+        answer: Future[Answer] = Future()
+        if self.refusal is not None:
+            answer.set_result(Refused(kind=RefusalKind.MODE, detail=self.refusal))
+            return answer
+        if self.follows and isinstance(intent, DragTo | FollowPoint):
+            self.be_at(intent.xyz)
+        if self.follows and isinstance(intent, FollowAngles):
+            x, y, z = self.robot.forward(intent.theta).tolist()
+            self.be_at((x, y, z))
+        answer.set_result(Accepted())
+        return answer
+
+    def stop(self, client: str, reason: str) -> None:
+        raise AssertionError("the scene has no stop")
+
+    def estop(self, client: str, reason: str) -> None:
+        raise AssertionError("the scene has no stop")
+
+
+@dataclasses.dataclass
+class Stand:
+    """A scene served to browsers."""
+
+    machine: FakeMachine
+    scene: Scene
+    port: int
+
+    @property
+    def url(self) -> str:
+        return f"http://127.0.0.1:{self.port}/scene/"
+
+    @property
+    def server(self) -> viser.ViserServer:
+        return self.scene._listener.server
+
+    def eventually(self, holds: Callable[[], Any], within: float = 20.0) -> Any:
+        return eventually(holds, within)
+
+
+def eventually(holds: Callable[[], Any], within: float = 20.0) -> Any:
+    """Wait for something to become true, and say what it became."""
+    deadline = time.monotonic() + within
+    while not (value := holds()):
+        assert time.monotonic() < deadline, "it did not happen"
+        time.sleep(0.01)
+    return value
+
+
+class Visitor:
+    """A browser's connection to the scene, spoken by hand."""
+
+    def __init__(self, port: int, session: str | None) -> None:
+        headers = {"Cookie": f"session={session}"} if session else {}
+        self.socket: ClientConnection = connect(
+            f"ws://127.0.0.1:{port}/scene",
+            subprotocols=[f"viser-v{viser.__version__}"],  # type: ignore[list-item]
+            additional_headers=headers,
+            max_size=None,
+            compression=None,
+        )
+        self.seen: list[dict[str, Any]] = []
+
+    def send(self, **message: Any) -> None:
+        self.socket.send(msgspec.msgpack.encode(message))
+
+    def look(self) -> None:
+        """The first camera message, by which viser counts a browser as there."""
+        self.send(**CAMERA)
+
+    def read(self, until: Callable[[dict[str, Any]], bool], within: float = 10.0) -> dict[str, Any]:
+        """The next message for which `until` is true."""
+        deadline = time.monotonic() + within
+        while True:
+            while self.seen:
+                if until(message := self.seen.pop(0)):
+                    return message
+            data = self.socket.recv(timeout=max(deadline - time.monotonic(), 0.0))
+            assert isinstance(data, bytes)
+            size = int.from_bytes(data[8:16], "little")
+            plain = zstandard.ZstdDecompressor().decompress(data[16 : 16 + size])
+            self.seen += msgspec.msgpack.decode(plain)["messages"]
+
+    def input(self, label: str) -> str:
+        """The uuid of the input with this label."""
+        message = self.read(lambda m: m.get("props", {}).get("label") == label)
+        return message["uuid"]
+
+    def closed(self, within: float = 5.0) -> tuple[int, str]:
+        """Wait until the server closes the connection; its code and reason."""
+        deadline = time.monotonic() + within
+        try:
+            while True:
+                self.socket.recv(timeout=max(deadline - time.monotonic(), 0.0))
+        except TimeoutError:
+            raise AssertionError("the connection stayed open") from None
+        except Exception:
+            code, reason = self.socket.protocol.close_code, self.socket.protocol.close_reason
+            return code or 0, reason or ""
+
+
+CAMERA: dict[str, Any] = {
+    "type": "ViewerCameraMessage",
+    "wxyz": [1, 0, 0, 0],
+    "position": [0.9, -1.1, 0.3],
+    "fov": 0.7,
+    "near": 0.01,
+    "far": 1000,
+    "image_height": 752,
+    "image_width": 648,
+    "look_at": [0, 0, -0.2],
+    "up_direction": [0, 0, 1],
+}
+
+DRAG: dict[str, Any] = {
+    "type": "SceneNodeDragMessage",
+    "phase": "start",
+    "name": "/robot/effector/plate",
+    "instance_index": None,
+    "start_position": [0, 0, -0.3],
+    "start_screen_pos": [0.5, 0.5],
+    "end_position": [0, 0, -0.3],
+    "end_screen_pos": [0.5, 0.5],
+    "button": "left",
+    "modifier": None,
+    "owner": "",
+}
+
+
+@pytest.fixture
+def camera_message() -> dict[str, Any]:
+    return dict(CAMERA)
+
+
+@pytest.fixture
+def drag_message() -> dict[str, Any]:
+    return dict(DRAG)
+
+
+@pytest.fixture
+def robot() -> Robot:
+    return load_robot("stm32")
+
+
+@pytest.fixture
+def other_robot(robot: Robot) -> Robot:
+    """Of another size, with arms elsewhere."""
+    mechanism = RotaryDelta(
+        base_radius=60, effector_radius=32, upper_arm=63, forearm=268, azimuths_deg=(-90, 30, 150)
+    )
+    workspace = dataclasses.replace(robot.workspace, z=(-290.0, -230.0), radius=120.0)
+    return dataclasses.replace(robot, name="other", mechanism=mechanism, workspace=workspace)
+
+
+@pytest.fixture
+def machine(robot: Robot) -> FakeMachine:
+    return FakeMachine(robot)
+
+
+@pytest.fixture
+def scene(machine: FakeMachine) -> Iterator[Scene]:
+    scene = Scene(machine)
+    scene.start()
+    yield scene
+    scene.close()
+
+
+@pytest.fixture
+def stand(machine: FakeMachine, scene: Scene) -> Iterator[Stand]:
+    app = FastAPI()
+    app.include_router(
+        scene.router(
+            session_of=lambda connection: connection.cookies.get("session"),
+            holds_control=lambda session: machine.snapshot.holder == session,
+        )
+    )
+    listening = socket.create_server(("127.0.0.1", 0))
+    server = uvicorn.Server(uvicorn.Config(app, log_level="warning"))
+    thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]}, daemon=True)
+    thread.start()
+    eventually(lambda: server.started)
+    yield Stand(machine=machine, scene=scene, port=listening.getsockname()[1])
+    server.should_exit = server.force_exit = True
+    thread.join(5.0)
+
+
+@pytest.fixture
+def visit(stand: Stand) -> Iterator[Callable[[str | None], Visitor]]:
+    visitors: list[Visitor] = []
+
+    def arrive(session: str | None) -> Visitor:
+        visitors.append(Visitor(stand.port, session))
+        return visitors[-1]
+
+    yield arrive
+    for visitor in visitors:
+        visitor.socket.close()
+
+
+@pytest.fixture(scope="session")
+def chromium() -> Iterator[Browser]:
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=CHROMIUM_ARGS)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def steady() -> np.random.Generator:
+    return np.random.default_rng(20)
