@@ -1,0 +1,17 @@
+"""Compile a loop over poses to machine code, once; the result is cached on disk."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, ParamSpec, TypeVar, cast
+
+import numba
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+def compiled(function: Callable[P, R]) -> Callable[P, R]:
+    """The same function, compiled at its first call."""
+    jit = cast(Any, numba).njit(cache=True, error_model="numpy")
+    return cast("Callable[P, R]", jit(function))

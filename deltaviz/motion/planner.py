@@ -1,0 +1,107 @@
+"""From a way to a plan that has passed the check: slower and slower, within a time budget."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from deltaviz.motion.check import Checker, Fault, Verdict
+from deltaviz.motion.followed import Array, Followed
+from deltaviz.motion.plan import Plan
+from deltaviz.motion.shaping import Shaper, Way
+from deltaviz.motion.space import CartesianSpace, JointSpace, Space
+
+TRIES = 5  # of one tick, over all ways
+AIM = 0.97  # of a limit: where a slower try should end up
+RESERVE = 0.997  # of the joints' limits: the rest is for rounding to the board's numbers
+RECOVERY = 1.3  # how much of what was given up is asked for again at the next plan
+BRAKE_SLOWER = 0.6  # a brake that leaves the legal region: go slower by this
+
+
+class Planner:
+    """Plans from a state, remembering how much had to be given up last time."""
+
+    def __init__(
+        self, robot: Followed, spaces: tuple[Space, Space], *, period: float,
+        clock: Callable[[], float], budget: float,
+    ) -> None:  # fmt: skip
+        joint, tip = robot.limits.joint, robot.limits.cartesian
+        self.check = Checker(
+            robot.kernel,
+            velocity=np.asarray(joint.velocity, dtype=float) * RESERVE,
+            acceleration=np.asarray(joint.acceleration, dtype=float) * RESERVE,
+            tip_velocity=tip.velocity,
+            tip_acceleration=tip.acceleration,
+        )
+        self._shapers = {space: Shaper(space, period) for space in spaces}
+        self._period = period
+        self._clock = clock
+        self._budget = budget
+        self._ends = 0.0
+        self._tries = 0
+        self.velocity = 1.0  # shares of the limits that the last plan was made with
+        self.acceleration = 1.0
+        self.refused: Verdict | None = None  # why the last way was not taken
+
+    def begin(self) -> None:
+        """A tick begins: its budget of time and tries is whole."""
+        self._ends = self._clock() + self._budget
+        self._tries = 0
+        self.refused = None
+
+    @property
+    def eased(self) -> bool:
+        """Whether the last plan is slower than its limits would allow elsewhere."""
+        return self.velocity < 1.0 or self.acceleration < 1.0
+
+    def __call__(self, space: Space, plan: Plan, at: int, way: Way) -> Plan | None:
+        """A plan along `way` from row `at` of `plan` (of the same space), or None."""
+        velocity = min(1.0, self.velocity * RECOVERY)
+        acceleration = min(1.0, self.acceleration * RECOVERY)
+        q, v, a = plan.q[at], plan.v[at], plan.a[at]
+        while self._tries < TRIES and self._clock() < self._ends:
+            self._tries += 1
+            rows = self._shapers[space](q, v, a, way, velocity=velocity, acceleration=acceleration)
+            if rows is None:
+                return None
+            made = self._with_joints(space, plan, at, rows)
+            if made is None:
+                return None
+            verdict = self.check(made.theta, made.rate, made.xyz, made.segment)
+            if verdict.fault is Fault.PATH:
+                self.refused = verdict
+                return None
+            if verdict.velocity <= 1.0 and verdict.acceleration <= 1.0:
+                if verdict.fault is Fault.NONE:
+                    self.velocity, self.acceleration = velocity, acceleration
+                    return made
+                self.refused = verdict
+                velocity *= BRAKE_SLOWER
+                continue
+            if verdict.velocity > 1.0:
+                velocity *= AIM / verdict.velocity
+            if verdict.acceleration > 1.0:
+                share = AIM / verdict.acceleration
+                acceleration *= max(0.1, share)
+                # Part of it comes from turning fast, which only a lower speed helps.
+                velocity *= np.sqrt(max(0.1, share)) if self._tries > 1 else 1.0
+        return None
+
+    def _with_joints(
+        self, space: Space, plan: Plan, at: int, rows: tuple[Array, Array, Array]
+    ) -> Plan | None:
+        q, v, a = rows
+        theta, rate, xyz = space.knots(q, v)
+        if not np.isfinite(rate).all():
+            return None
+        theta[0], rate[0] = plan.theta[at], plan.rate[at]
+        return Plan(space, theta, rate, xyz, q, v, a, self._period)
+
+    def in_space(self, plan: Plan, at: int, space: CartesianSpace | JointSpace) -> Plan:
+        """The state in row `at` of `plan` as a plan of one row in another space."""
+        theta, rate = plan.theta[at], plan.rate[at]
+        joints = plan.space.joints(theta, rate, plan.a[at])
+        q, v, a = space.state(theta, rate, joints)
+        rows = (theta[None], rate[None], plan.xyz[at][None], q[None], v[None], a[None])
+        return Plan(space, *rows, self._period)
