@@ -20,6 +20,8 @@ from deltaviz.mechanism.arrays import Array
 EPS = float(np.finfo(np.float64).eps)
 EDGE_ROUNDING = 4 * EPS  # of ρ² - K², relative to the sum of the squares that make K
 
+LEAST_RHO = 1e-3  # of an upper arm: what ρ is taken for where it is smaller still
+
 
 @dataclass(frozen=True, slots=True)
 class Arm:
@@ -61,7 +63,7 @@ class Arm:
         """
         p, v = self.plane(x, y)
         k, _ = self._k(p, v, z)
-        square = np.maximum(p * p + z * z, (1e-3 * self.upper_arm) ** 2)
+        square = np.maximum(p * p + z * z, (LEAST_RHO * self.upper_arm) ** 2)
         return 1.0 - k * k / square
 
     def miss(self, x: Array, y: Array, z: Array) -> tuple[Array, Array]:

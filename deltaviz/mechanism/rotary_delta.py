@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar, Self
+from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,6 +19,7 @@ from deltaviz.mechanism.kernel import Kernel
 from deltaviz.mechanism.margin import Margin, MarginKind
 from deltaviz.mechanism.stiffness import TYPE_1_RESERVE, TYPE_2_RESERVE, stiffness, unit
 
+MEET_ROUNDING = 16 * EPS  # of the squared height of P over the elbows, in squared forearms
 UNDETERMINED = 1e-12  # elbow centres whose triangle is smaller than this, in squared forearms
 LEAST_SEPARATION = math.radians(1.0)  # of two arms' azimuths
 
@@ -36,13 +37,6 @@ class RotaryDelta:
     upper_arm: tuple[float, ...]
     forearm: tuple[float, ...]
     azimuths_deg: tuple[float, ...]
-
-    joints: ClassVar[int] = 3
-    margin_names: ClassVar[tuple[Margin, ...]] = (
-        *(Margin(MarginKind.TYPE_1, arm) for arm in range(3)),
-        Margin(MarginKind.TYPE_2),
-        Margin(MarginKind.PARALLELOGRAM),
-    )
 
     def __init__(
         self,
@@ -87,17 +81,29 @@ class RotaryDelta:
             azimuths_deg=azimuths_deg,
         )
 
+    @property
+    def joints(self) -> int:
+        return 3
+
+    @property
+    def margin_names(self) -> tuple[Margin, ...]:
+        return (
+            *(Margin(MarginKind.TYPE_1, arm) for arm in range(3)),
+            Margin(MarginKind.TYPE_2),
+            Margin(MarginKind.PARALLELOGRAM),
+        )
+
     @cached_property
     def arms(self) -> tuple[Arm, ...]:
-        lengths = zip(
-            self.base_radius,
-            self.effector_radius,
-            self.upper_arm,
-            self.forearm,
-            self.azimuths_deg,
-            strict=True,
+        return tuple(
+            Arm(
+                offset=self.base_radius[i] - self.effector_radius[i],
+                upper_arm=self.upper_arm[i],
+                forearm=self.forearm[i],
+                azimuth=math.radians(self.azimuths_deg[i]),
+            )
+            for i in range(self.joints)
         )
-        return tuple(Arm(R - r, L, fore, math.radians(azimuth)) for R, r, L, fore, azimuth in lengths)
 
     @cached_property
     def handedness(self) -> float:
@@ -254,7 +260,7 @@ class RotaryDelta:
         along_b = (_dot(b, b) + (l1 - l3)) / 2
         w = (along_a * np.cross(b, n) + along_b * np.cross(n, a)) / square
         height = l1 - _dot(w, w)
-        height = np.where((height < 0) & (height >= -16 * EPS * l1), 0.0, height)
+        height = np.where((height < 0) & (height >= -MEET_ROUNDING * l1), 0.0, height)
         height = np.where(square > (UNDETERMINED * l1) ** 2, height, np.nan)
         return first + w - n * (self.handedness * np.sqrt(height / square))
 

@@ -1,23 +1,32 @@
 """The rotary delta's arithmetic compiled for the control loop: a few poses, no overhead.
 
-All compiled functions stand in this one file, because numba's cache notices changes of the file
-that a function stands in, and not of those that it calls.
+All compiled functions stand in this one file and take every number as an argument, because
+numba's cache notices changes of the file that a function stands in, and of no other: neither of
+functions that it calls nor of constants that it imports.
 
-`g` has 4 rows of 5: for each arm (offset, upper_arm, forearm, cos, sin of its azimuth), then
-(tool offset x, y, z, handedness, 0). `limits` is a structure of numbers, see `LIMITS`. The
-formulas are those of `arm`, `rotary_delta` and `stiffness`; tests hold them together.
+`g` has 5 rows of 5: for each arm (offset, upper_arm, forearm, cos, sin of its azimuth), then
+(tool offset x, y, z, handedness, 0), then the tolerances (`EDGE` and so on). `limits` is a row of
+numbers, see `TYPE_1_SCALE` and so on. The formulas are those of `arm`, `rotary_delta` and
+`stiffness`; tests hold them together.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from typing import Any, ParamSpec, TypeVar
 
+import numba
 import numpy as np
-from numba import njit
 
-from deltaviz.mechanism.arm import EDGE_ROUNDING, EPS
-from deltaviz.mechanism.rotary_delta import UNDETERMINED
-from deltaviz.mechanism.stiffness import TINY, TYPE_1_RESERVE, TYPE_2_RESERVE
+from deltaviz.mechanism.arrays import Array
+
+# Columns of the last row of `g`.
+EDGE = 0
+MEET = 1
+UNDETERMINED = 2
+TINY = 3
+LEAST_RHO = 4
 
 # Indices into `limits`; each of the first six groups has one number per arm.
 TYPE_1_SCALE = 0
@@ -29,23 +38,36 @@ TYPE_2_SCALE = 15
 ROUNDING = 16
 BOX = 17  # z, x, y: low and high; NaN for "no limit", then no column
 RADIUS = 23
-LIMITS = 24
+TYPE_1_RESERVE = 24
+TYPE_2_RESERVE = 25
+LIMITS = 26
+
+Vector = tuple[float, float, float]
+
+_P = ParamSpec("_P")
+_R = TypeVar("_R")
+_jit: Any = numba.njit  # pyright: ignore  (numba has no types)
 
 
-@njit(cache=True, error_model="numpy")
-def _plane(x, y, g, i):
+def _compiled(function: Callable[_P, _R]) -> Callable[_P, _R]:
+    """Compiled at its first call and cached; a division by zero gives inf or NaN, as in numpy."""
+    return _jit(cache=not function.__name__.startswith("_"), error_model="numpy")(function)
+
+
+@_compiled
+def _plane(x: float, y: float, g: Array, i: int) -> tuple[float, float]:
     return x * g[i, 3] + y * g[i, 4] - g[i, 0], y * g[i, 3] - x * g[i, 4]
 
 
-@njit(cache=True, error_model="numpy")
-def _angle(x, y, z, g, i, clamp):
+@_compiled
+def _angle(x: float, y: float, z: float, g: Array, i: int, clamp: bool) -> float:
     p, v = _plane(x, y, g, i)
     upper = g[i, 1]
     point = p * p + v * v + z * z
     k = (point + (upper * upper - g[i, 2] * g[i, 2])) / (2.0 * upper)
     square = p * p + z * z - k * k
     if square < 0.0:
-        edge = EDGE_ROUNDING * abs(k) * (point + upper * upper + g[i, 2] * g[i, 2]) / upper
+        edge = g[4, EDGE] * abs(k) * (point + upper * upper + g[i, 2] * g[i, 2]) / upper
         if not clamp and square < -edge:
             return math.nan
         square = 0.0
@@ -53,8 +75,10 @@ def _angle(x, y, z, g, i, clamp):
     return math.atan2(-z * k - p * q, p * k - z * q)
 
 
-@njit(cache=True, error_model="numpy")
-def _forearm(x, y, z, theta, g, i):
+@_compiled
+def _forearm(
+    x: float, y: float, z: float, theta: float, g: Array, i: int
+) -> tuple[float, float, float, float]:
     """The forearm's vector and jq of one arm."""
     cos, sin = math.cos(theta), math.sin(theta)
     radius = g[i, 0] + g[i, 1] * cos
@@ -62,19 +86,19 @@ def _forearm(x, y, z, theta, g, i):
     return sx, sy, sz, -g[i, 1] * ((sx * g[i, 3] + sy * g[i, 4]) * sin + sz * cos)
 
 
-@njit(cache=True, error_model="numpy")
-def _cross(ax, ay, az, bx, by, bz):
+@_compiled
+def _cross(ax: float, ay: float, az: float, bx: float, by: float, bz: float) -> Vector:
     return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
 
 
-@njit(cache=True, error_model="numpy")
-def _elbow(theta, g, i):
+@_compiled
+def _elbow(theta: float, g: Array, i: int) -> Vector:
     radius = g[i, 0] + g[i, 1] * math.cos(theta)
     return radius * g[i, 3], radius * g[i, 4], -g[i, 1] * math.sin(theta)
 
 
-@njit(cache=True, error_model="numpy")
-def _meet(t0, t1, t2, g):
+@_compiled
+def _meet(t0: float, t1: float, t2: float, g: Array) -> Vector:
     dx, dy, dz = _elbow(t0, g, 0)
     ax, ay, az = _elbow(t1, g, 1)
     bx, by, bz = _elbow(t2, g, 2)
@@ -83,7 +107,7 @@ def _meet(t0, t1, t2, g):
     nx, ny, nz = _cross(ax, ay, az, bx, by, bz)
     square = nx * nx + ny * ny + nz * nz
     l1, l2, l3 = g[0, 2] * g[0, 2], g[1, 2] * g[1, 2], g[2, 2] * g[2, 2]
-    if not square > (UNDETERMINED * l1) ** 2:
+    if not square > (g[4, UNDETERMINED] * l1) ** 2:
         return math.nan, math.nan, math.nan
     along_a = (ax * ax + ay * ay + az * az + (l1 - l2)) / (2.0 * square)
     along_b = (bx * bx + by * by + bz * bz + (l1 - l3)) / (2.0 * square)
@@ -96,39 +120,39 @@ def _meet(t0, t1, t2, g):
     )
     height = l1 - (wx * wx + wy * wy + wz * wz)
     if height < 0.0:
-        if height < -16.0 * EPS * l1:
+        if height < -g[4, MEET] * l1:
             return math.nan, math.nan, math.nan
         height = 0.0
     h = g[3, 3] * math.sqrt(height / square)
     return dx + wx - nx * h, dy + wy - ny * h, dz + wz - nz * h
 
 
-@njit(cache=True, error_model="numpy")
-def _stiffness(a, b, c):
+@_compiled
+def _stiffness(a: Array, b: Array, c: Array, tiny: float) -> float:
     px, py, pz = _cross(b[0], b[1], b[2], c[0], c[1], c[2])
     qx, qy, qz = _cross(c[0], c[1], c[2], a[0], a[1], a[2])
     rx, ry, rz = _cross(a[0], a[1], a[2], b[0], b[1], b[2])
     norm = px * px + py * py + pz * pz + qx * qx + qy * qy + qz * qz + rx * rx + ry * ry + rz * rz
-    return (a[0] * px + a[1] * py + a[2] * pz) / max(math.sqrt(norm), TINY)
+    return (a[0] * px + a[1] * py + a[2] * pz) / max(math.sqrt(norm), tiny)
 
 
-@njit(cache=True, error_model="numpy")
-def _unit(x, y, z):
-    length = max(math.sqrt(x * x + y * y + z * z), TINY)
+@_compiled
+def _unit(x: float, y: float, z: float, tiny: float) -> Vector:
+    length = max(math.sqrt(x * x + y * y + z * z), tiny)
     return x / length, y / length, z / length
 
 
-@njit(cache=True, error_model="numpy")
-def _type_1(x, y, z, g, i, jq):
+@_compiled
+def _type_1(x: float, y: float, z: float, g: Array, i: int, jq: float) -> float:
     p, v = _plane(x, y, g, i)
     upper = g[i, 1]
     k = (p * p + v * v + z * z + (upper * upper - g[i, 2] * g[i, 2])) / (2.0 * upper)
-    value = 1.0 - k * k / max(p * p + z * z, (1e-3 * upper) ** 2)
+    value = 1.0 - k * k / max(p * p + z * z, (g[4, LEAST_RHO] * upper) ** 2)
     return value if jq >= 0.0 else -abs(value)
 
 
-@njit(cache=True, error_model="numpy")
-def inverse(xyz, g):
+@_compiled
+def inverse(xyz: Array, g: Array) -> Array:
     out = np.empty((xyz.shape[0], 3))
     for k in range(xyz.shape[0]):
         x, y, z = xyz[k, 0] - g[3, 0], xyz[k, 1] - g[3, 1], xyz[k, 2] - g[3, 2]
@@ -141,8 +165,8 @@ def inverse(xyz, g):
     return out
 
 
-@njit(cache=True, error_model="numpy")
-def forward(theta, g):
+@_compiled
+def forward(theta: Array, g: Array) -> Array:
     out = np.empty((theta.shape[0], 3))
     for k in range(theta.shape[0]):
         x, y, z = _meet(theta[k, 0], theta[k, 1], theta[k, 2], g)
@@ -150,8 +174,8 @@ def forward(theta, g):
     return out
 
 
-@njit(cache=True, error_model="numpy")
-def joint_velocity(xyz, theta, velocity, g):
+@_compiled
+def joint_velocity(xyz: Array, theta: Array, velocity: Array, g: Array) -> Array:
     out = np.empty((xyz.shape[0], 3))
     for k in range(xyz.shape[0]):
         x, y, z = xyz[k, 0] - g[3, 0], xyz[k, 1] - g[3, 1], xyz[k, 2] - g[3, 2]
@@ -162,8 +186,8 @@ def joint_velocity(xyz, theta, velocity, g):
     return out
 
 
-@njit(cache=True, error_model="numpy")
-def tip_velocity(xyz, theta, velocity, g):
+@_compiled
+def tip_velocity(xyz: Array, theta: Array, velocity: Array, g: Array) -> Array:
     out = np.empty((xyz.shape[0], 3))
     for k in range(xyz.shape[0]):
         x, y, z = xyz[k, 0] - g[3, 0], xyz[k, 1] - g[3, 1], xyz[k, 2] - g[3, 2]
@@ -181,8 +205,8 @@ def tip_velocity(xyz, theta, velocity, g):
     return out
 
 
-@njit(cache=True, error_model="numpy")
-def _workspace(row, column, tip, limits):
+@_compiled
+def _workspace(row: Array, column: int, tip: Array, limits: Array) -> None:
     for axis in range(3):
         value = tip[(axis + 2) % 3]
         low, high = limits[BOX + 2 * axis], limits[BOX + 2 * axis + 1]
@@ -196,8 +220,10 @@ def _workspace(row, column, tip, limits):
         row[column] = (radius * radius - square) / (2.0 * radius) + limits[ROUNDING]
 
 
-@njit(cache=True, error_model="numpy")
-def _margins_of(row, tip, theta, g, limits, forearm, couple):
+@_compiled
+def _margins_of(
+    row: Array, tip: Array, theta: Array, g: Array, limits: Array, forearm: Array, couple: Array
+) -> None:
     x, y, z = tip[0] - g[3, 0], tip[1] - g[3, 1], tip[2] - g[3, 2]
     rounding = limits[ROUNDING]
     for i in range(3):
@@ -205,11 +231,11 @@ def _margins_of(row, tip, theta, g, limits, forearm, couple):
         if math.isnan(angle):
             angle = _angle(x, y, z, g, i, True)
         sx, sy, sz, jq = _forearm(x, y, z, angle, g, i)
-        ux, uy, uz = _unit(sx, sy, sz)
+        ux, uy, uz = _unit(sx, sy, sz, g[4, TINY])
         forearm[i, 0], forearm[i, 1], forearm[i, 2] = ux, uy, uz
         tx, ty, tz = _cross(-g[i, 4], g[i, 3], 0.0, ux, uy, uz)
         couple[i, 0], couple[i, 1], couple[i, 2] = tx, ty, tz
-        spare = _type_1(x, y, z, g, i, jq) - TYPE_1_RESERVE
+        spare = _type_1(x, y, z, g, i, jq) - limits[TYPE_1_RESERVE]
         row[i] = spare * limits[TYPE_1_SCALE + i] + rounding
         _, v = _plane(x, y, g, i)
         most = limits[SIDEWAYS_MAX + i]
@@ -217,15 +243,15 @@ def _margins_of(row, tip, theta, g, limits, forearm, couple):
         scale = limits[JOINT_SCALE + i]
         row[8 + i] = (angle - limits[JOINT_MIN + i]) * scale + rounding
         row[11 + i] = (limits[JOINT_MAX + i] - angle) * scale + rounding
-    held = -g[3, 3] * _stiffness(forearm[0], forearm[1], forearm[2])
-    row[3] = (held - TYPE_2_RESERVE) * limits[TYPE_2_SCALE] + rounding
-    held = g[3, 3] * _stiffness(couple[0], couple[1], couple[2])
-    row[4] = (held - TYPE_2_RESERVE) * limits[TYPE_2_SCALE] + rounding
+    held = -g[3, 3] * _stiffness(forearm[0], forearm[1], forearm[2], g[4, TINY])
+    row[3] = (held - limits[TYPE_2_RESERVE]) * limits[TYPE_2_SCALE] + rounding
+    held = g[3, 3] * _stiffness(couple[0], couple[1], couple[2], g[4, TINY])
+    row[4] = (held - limits[TYPE_2_RESERVE]) * limits[TYPE_2_SCALE] + rounding
     _workspace(row, 14, tip, limits)
 
 
-@njit(cache=True, error_model="numpy")
-def margins(xyz, theta, g, limits, columns):
+@_compiled
+def margins(xyz: Array, theta: Array, g: Array, limits: Array, columns: int) -> Array:
     out = np.empty((xyz.shape[0], columns))
     forearm = np.empty((3, 3))
     couple = np.empty((3, 3))

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from deltaviz.mechanism import arm as arm_module
+from deltaviz.mechanism import rotary_delta, stiffness
 from deltaviz.mechanism import rotary_delta_compiled as compiled
 from deltaviz.mechanism.arrays import Array
 from deltaviz.mechanism.bounds import ROUNDING, Bounds
-
-if TYPE_CHECKING:
-    from deltaviz.mechanism.rotary_delta import RotaryDelta
-
-_functions: Any = compiled  # numba's dispatchers have no useful types
+from deltaviz.mechanism.rotary_delta import RotaryDelta
 
 
 class RotaryDeltaKernel:
@@ -27,19 +24,19 @@ class RotaryDeltaKernel:
         self._columns = 14 + boxes + (bounds.radius is not None)
 
     def inverse(self, xyz: Array) -> Array:
-        return _functions.inverse(xyz, self._g)
+        return compiled.inverse(xyz, self._g)
 
     def forward(self, theta: Array) -> Array:
-        return _functions.forward(theta, self._g)
+        return compiled.forward(theta, self._g)
 
     def margins(self, xyz: Array, theta: Array) -> Array:
-        return _functions.margins(xyz, theta, self._g, self._limits, self._columns)
+        return compiled.margins(xyz, theta, self._g, self._limits, self._columns)
 
     def joint_velocity(self, xyz: Array, theta: Array, velocity: Array) -> Array:
-        return _functions.joint_velocity(xyz, theta, velocity, self._g)
+        return compiled.joint_velocity(xyz, theta, velocity, self._g)
 
     def tip_velocity(self, xyz: Array, theta: Array, velocity: Array) -> Array:
-        return _functions.tip_velocity(xyz, theta, velocity, self._g)
+        return compiled.tip_velocity(xyz, theta, velocity, self._g)
 
     def warm_up(self) -> None:
         theta = np.zeros((1, 3))
@@ -49,8 +46,16 @@ class RotaryDeltaKernel:
 
 
 def _geometry(mechanism: RotaryDelta, bounds: Bounds) -> Array:
-    rows = [(arm.offset, arm.upper_arm, arm.forearm, arm.cos, arm.sin) for arm in mechanism.arms]
-    return np.array([*rows, (*bounds.tool_offset, mechanism.handedness, 0.0)])
+    out = np.zeros((5, 5))
+    for i, arm in enumerate(mechanism.arms):
+        out[i] = arm.offset, arm.upper_arm, arm.forearm, arm.cos, arm.sin
+    out[3] = (*bounds.tool_offset, mechanism.handedness, 0.0)
+    out[4, compiled.EDGE] = arm_module.EDGE_ROUNDING
+    out[4, compiled.MEET] = rotary_delta.MEET_ROUNDING
+    out[4, compiled.UNDETERMINED] = rotary_delta.UNDETERMINED
+    out[4, compiled.TINY] = stiffness.TINY
+    out[4, compiled.LEAST_RHO] = arm_module.LEAST_RHO
+    return out
 
 
 def _limits(mechanism: RotaryDelta, bounds: Bounds) -> Array:
@@ -66,6 +71,8 @@ def _limits(mechanism: RotaryDelta, bounds: Bounds) -> Array:
         out[start : start + 3] = values
     out[compiled.TYPE_2_SCALE] = mechanism.type_2_scale
     out[compiled.ROUNDING] = ROUNDING
+    out[compiled.TYPE_1_RESERVE] = stiffness.TYPE_1_RESERVE
+    out[compiled.TYPE_2_RESERVE] = stiffness.TYPE_2_RESERVE
     for axis, box in enumerate((bounds.z, bounds.x, bounds.y)):
         if box is not None:
             out[compiled.BOX + 2 * axis : compiled.BOX + 2 * axis + 2] = box

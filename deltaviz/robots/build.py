@@ -207,8 +207,11 @@ def _check_homing(robot: made.Robot, file: schema.RobotFile) -> None:
         raise Inconsistent(
             "homing.switch_deg",
             list(homing.switch_deg),
-            "must be a pose in which the forearms can meet",
+            _MUST_MEET,
         )
+
+
+_MUST_MEET = "must be a pose in which the forearms can meet"
 
 
 def _check_ready(robot: made.Robot, file: schema.RobotFile) -> None:
@@ -216,7 +219,7 @@ def _check_ready(robot: made.Robot, file: schema.RobotFile) -> None:
     tip = robot.forward(ready)
     given = list(file.homing.ready_deg)
     if not np.isfinite(tip).all():
-        raise Inconsistent("homing.ready_deg", given, "must be a pose in which the forearms can meet")
+        raise Inconsistent("homing.ready_deg", given, _MUST_MEET)
     margins = robot.margins(tip, ready)
     if (margins >= 0).all():
         return

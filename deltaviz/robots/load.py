@@ -95,7 +95,7 @@ def _problems(error: ValidationError, model: Any) -> list[tuple[str, str]]:
         elif kind in ("model_type", "model_attributes_type"):
             text = f"{field} = {value!r}: must be a section, [{field}]"
         elif kind == "literal_error":
-            text = f"{field} = {value!r}: must be {problem['ctx']['expected']}"
+            text = f"{field} = {value!r}: must be {problem.get('ctx', {})['expected']}"
         else:
             text = f"{field} = {value!r}: {problem['msg'].removeprefix('Value error, ')}"
         found.append((field, text))

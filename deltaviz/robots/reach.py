@@ -135,21 +135,20 @@ def _workspace(robot: Robot, limit: Margin, tip: Array) -> Reason:
     excess = float(max(low - value, value - high))
     side = "below" if value < low else "above"
     text = (
-        f"{name} {value:.6g} mm is {_length(excess)} {side} the workspace "
-        f"({low:g} to {high:g} mm)."
+        f"{name} {value:.6g} mm is {_length(excess)} {side} the workspace ({low:g} to {high:g} mm)."
     )
     return Reason(limit, excess, "mm", text)
 
 
 def _singularity(robot: Robot, limit: Margin, tip: Array) -> str:
     if limit.kind is MarginKind.TYPE_2:
-        return "The forearms would lie so flat, or so parallel, that they no longer hold the effector."
+        return "The forearms would be too flat, or too parallel, to hold the effector."
     if limit.kind is MarginKind.PARALLELOGRAM:
         return "The parallelograms would no longer hold the effector level."
     far, near = robot.mechanism.misses(tip - np.asarray(robot.tool_offset))
     arm = limit.arm or 0
     shape, left = ("straight", -far[arm]) if far[arm] > near[arm] else ("folded", -near[arm])
-    return f"Arm {arm + 1} would be nearly {shape}: only {_length(left)} from the edge of its reach."
+    return f"Arm {arm + 1} would be nearly {shape}, {_length(left)} from the edge of its reach."
 
 
 def _length(value: float) -> str:

@@ -174,7 +174,9 @@ class Robot:
         margins are finite wherever `xyz` is."""
         tip = rows(xyz, len(self.tool_offset), "xyz")
         angles = rows(theta, self.joint_count, "theta")
-        tip, angles = np.broadcast_arrays(tip, angles) if tip.shape != angles.shape else (tip, angles)
+        leading = np.broadcast_shapes(tip.shape[:-1], angles.shape[:-1])
+        tip = np.broadcast_to(tip, (*leading, tip.shape[-1]))
+        angles = np.broadcast_to(angles, (*leading, angles.shape[-1]))
         centre = self._centre(tip)
         angles = np.where(np.isnan(angles), self.mechanism.nearest_angles(centre), angles)
         most = np.asarray(self._sideways_max)

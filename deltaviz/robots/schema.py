@@ -90,7 +90,7 @@ PerArm = Annotated[tuple[float, ...], BeforeValidator(_each(_above_zero))]
 Angles = Annotated[tuple[float, ...], BeforeValidator(_each(_angle))]
 Flags = Annotated[tuple[bool, ...], BeforeValidator(_each(_flag))]
 Azimuths = Annotated[
-    tuple[float, ...], BeforeValidator(_list_of(_finite, 3, "must be three directions, one per arm"))
+    tuple[float, ...], BeforeValidator(_list_of(_finite, 3, "must be one direction per arm"))
 ]
 Offset = Annotated[tuple[float, ...], BeforeValidator(_list_of(_finite, 3, "must be [x, y, z]"))]
 Gear = Annotated[

@@ -24,7 +24,8 @@ def key_lines(text: str) -> dict[str, int]:
                 name = _plain(key[1])
                 lines.setdefault(f"{section}.{name}" if section else name, number)
         code = re.sub(r"""("[^"]*"|'[^']*'|\#.*)""", "", line)
-        depth = max(0, depth + code.count("[") + code.count("{") - code.count("]") - code.count("}"))
+        opened, closed = len(re.findall(r"[\[{]", code)), len(re.findall(r"[\]}]", code))
+        depth = max(0, depth + opened - closed)
     return lines
 
 
