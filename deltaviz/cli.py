@@ -208,7 +208,7 @@ def _robots(options: argparse.Namespace) -> int:
         low, high = robot.workspace.z
         print(
             f"{robot.name:<12} {robot.kind}, {robot.joint_count} joints, "
-            f"Z {low:g} to {high:g} mm, {robot.drive.driver}"
+            f"Z {low:g} to {high:g} mm, {robot.drive.driver or 'simulation only'}"
         )
     return OK
 

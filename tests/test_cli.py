@@ -1,0 +1,133 @@
+"""What a person reads in the terminal, and what a script gets back."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+from deltaviz.cli import main
+
+
+def run(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
+    """Exit status, standard output and standard error of one command."""
+    try:
+        status = main(arguments)
+    except SystemExit as exit:
+        status = exit.code if isinstance(exit.code, int) else 1
+    out, err = capsys.readouterr()
+    return status, out, err
+
+
+def test_ik_prints_one_solution(capsys: pytest.CaptureFixture[str]) -> None:
+    status, out, err = run(capsys, "ik", "0", "0", "-300")
+    assert (status, err) == (0, "")
+    assert out == "2.271907  2.271907  2.271907 °\n"
+
+
+def test_fk_agrees_with_the_tutorial(capsys: pytest.CaptureFixture[str]) -> None:
+    status, out, _ = run(capsys, "fk", "0", "0", "0", "--robot", "trossen", "--json")
+    assert status == 0
+    assert json.loads(out)["xyz_mm"] == pytest.approx([0, 0, -96.859015171], abs=1e-9)
+
+
+def test_json_is_one_object_that_goes_there_and_back(capsys: pytest.CaptureFixture[str]) -> None:
+    _, out, _ = run(capsys, "ik", "10", "-20", "-300", "--json")
+    theta = json.loads(out)["theta_deg"]
+    _, out, _ = run(capsys, "fk", "--json", *map(repr, theta))
+    assert json.loads(out)["xyz_mm"] == pytest.approx([10, -20, -300], abs=1e-9)
+
+
+@pytest.mark.parametrize("z", ["-300", "-300.0", "-3e2", "-.3e3"])
+def test_negative_numbers_work_as_typed(capsys: pytest.CaptureFixture[str], z: str) -> None:
+    assert run(capsys, "ik", "0", "0", z)[1] == "2.271907  2.271907  2.271907 °\n"
+
+
+def test_out_of_reach_says_why(capsys: pytest.CaptureFixture[str]) -> None:
+    status, out, err = run(capsys, "ik", "0", "0", "-900", "--json")
+    assert (status, out) == (1, "")
+    assert "Arm 1 cannot reach" in err
+
+
+def test_outside_the_limits_is_a_solution_with_a_note(capsys: pytest.CaptureFixture[str]) -> None:
+    status, out, err = run(capsys, "ik", "200", "0", "-200")
+    assert status == 0
+    assert out
+    assert "lower limit of -45°" in err
+
+
+def test_angles_at_which_nothing_meets(capsys: pytest.CaptureFixture[str]) -> None:
+    status, out, err = run(capsys, "fk", "--robot", "zheng2023", "136.5", "99.25", "-46.5")
+    assert (status, out) == (1, "")
+    assert "forearms cannot meet" in err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (["ik", "0", "0"], "takes 3 coordinates in mm; got 2"),
+        (["ik", "0", "0", "0", "0"], "takes 3 coordinates in mm; got 4"),
+        (["ik", "0", "x", "-300"], "'x' is no number"),
+        (["ik", "0", "nan", "-300"], "'nan' is not finite"),
+        (["ik", "0", "-inf", "-300"], "'-inf' is not finite"),
+        (["fk", "0", "0"], "takes 3 angles in degrees; got 2"),
+        (["ik", "0", "0", "-300", "--robot", "trosen"], "did you mean 'trossen'"),
+        (["serve", "--robot", "trosen"], "did you mean 'trossen'"),
+        (["--robot", "./none.toml"], "none.toml"),
+        (["sreve"], "Did you mean 'serve'?"),
+        (["--port", "99999"], "use a number from 0 to 65535"),
+        (["--port", "x"], "use a number from 0 to 65535"),
+        (["--host", "0.0.0.0"], "token"),
+    ],
+)
+def test_bad_usage_is_status_2_with_a_way_out(
+    capsys: pytest.CaptureFixture[str], arguments: list[str], says: str
+) -> None:
+    status, out, err = run(capsys, *arguments)
+    assert (status, out) == (2, "")
+    assert says in err
+    assert "Traceback" not in err
+
+
+@pytest.mark.parametrize(
+    ("link", "says"),
+    [
+        ("emulate://", "emulate://"),
+        ("serial:///dev/ttyUSB0", "serial:///dev/ttyUSB0"),
+        ("sim://?home=0", "home"),
+        ("nonsense", "sim://"),
+    ],
+)
+def test_a_link_that_cannot_be_had_is_status_1(
+    capsys: pytest.CaptureFixture[str], link: str, says: str
+) -> None:
+    status, out, err = run(capsys, "serve", "--port", "0", "--no-browser", "--link", link)
+    assert (status, out) == (1, "")
+    assert says in err
+    assert "Traceback" not in err
+
+
+def test_robots_lists_the_presets(capsys: pytest.CaptureFixture[str]) -> None:
+    _, out, _ = run(capsys, "robots")
+    assert [line.split()[0] for line in out.splitlines()][0] == "stm32"
+    assert {"stm32", "trossen", "zheng2023", "deltadraw"} <= {
+        line.split()[0] for line in out.splitlines()
+    }
+
+
+def test_ports_never_fails(capsys: pytest.CaptureFixture[str]) -> None:
+    status, out, _ = run(capsys, "ports", "--json")
+    assert status == 0
+    assert isinstance(json.loads(out)["ports"], list)
+
+
+def test_the_command_starts_without_the_heavy_libraries() -> None:
+    watched = "numba", "viser", "fastapi", "ruckig", "serial"
+    code = (
+        "import sys; from deltaviz.cli import main; main(['ik', '0', '0', '-300', '--json']);"
+        f"print([m for m in {watched} if m in sys.modules], file=sys.stderr)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stderr == "[]\n"
