@@ -55,7 +55,9 @@ class Fault(IntEnum):
 
 
 class Refusal(IntEnum):
-    """Why the board refused a command."""
+    """Why the board refused a command. CONFIGURATION: values that make no sense, or a command
+    that needs a configuration which the board does not have.
+    """
 
     STATE = 1
     EPOCH = 2
@@ -150,12 +152,12 @@ class Enable:
 
 @dataclass(frozen=True, slots=True)
 class Home:
-    """Only while HALTED, and with a live lease (Keep), which homing needs as any motion does."""
+    """Only at rest, and with a live lease (Keep), which homing needs as any motion does."""
 
 
 @dataclass(frozen=True, slots=True)
 class Arm:
-    """Opens an epoch, from HALTED only: the first segment starts at exactly `counts`, at rest.
+    """Opens an epoch, at rest only: the first segment starts at exactly `counts`.
 
     `epoch` must be 1 to 32767 after the board's last one (`HelloReply.last_epoch`), `counts` the
     board's own, `t_start` the board's present tick as the host knows it (at most 150 ms ago and

@@ -1,0 +1,86 @@
+"""What hangs on the simulated board's pins: arms with a hidden pose at power-up, switches, ends.
+
+The arms hold where they are when the drivers are off; real ones may drop. The direction pins'
+inversion is no part of it: messages and counts know no pins.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import radians
+
+from deltaviz.link.board.parameters import Parameters
+
+_END_BEYOND = radians(6)  # from the outermost of joint limit and switch to the mechanical end
+_POWER_UP = (0.20, -0.12, 0.08, -0.16)  # rad from the ready pose: where arms were left
+
+
+class Plant:
+    """Arms by microsteps from the true zero angle.
+
+    `forced_switches` makes a switch read so whatever the arm does (a broken one).
+    """
+
+    def __init__(self, parameters: Parameters, *, theta: Sequence[float]) -> None:
+        """`theta` is the hidden pose of the arms (rad)."""
+        configure = parameters.configure
+        per_rad = configure.microsteps_per_rad
+        self._direction = configure.homing_direction
+        self._switch = parameters.switch
+        self._arms = [round(angle * m) for angle, m in zip(theta, per_rad, strict=True)]
+        self._low = [
+            int((min(low, switch) - _END_BEYOND) * m)
+            for low, switch, m in zip(
+                configure.joint_min, configure.homing_switch, per_rad, strict=True
+            )
+        ]
+        self._high = [
+            int((max(high, switch) + _END_BEYOND) * m)
+            for high, switch, m in zip(
+                configure.joint_max, configure.homing_switch, per_rad, strict=True
+            )
+        ]
+        self._per_rad = per_rad
+        self._counts: Sequence[int] = [0] * parameters.joints
+        self.forced_switches: dict[int, bool] = {}
+
+    @property
+    def theta(self) -> tuple[float, ...]:
+        """The true angles of the arms, rad."""
+        return tuple(arm / m for arm, m in zip(self._arms, self._per_rad, strict=True))
+
+    @property
+    def switches(self) -> list[bool]:
+        direction = self._direction
+        pressed = [
+            (arm - switch) * direction >= 0
+            for arm, switch in zip(self._arms, self._switch, strict=True)
+        ]
+        for joint, reads in self.forced_switches.items():
+            pressed[joint] = reads
+        return pressed
+
+    def step(self, counts: Sequence[int]) -> None:
+        """The counter went to `counts`; an arm at its mechanical end stays, its steps are lost."""
+        self._arms = [
+            min(max(arm + count - last, low), high)
+            for arm, count, last, low, high in zip(
+                self._arms, counts, self._counts, self._low, self._high, strict=True
+            )
+        ]
+        self._counts = counts
+
+    def rebase(self, counts: Sequence[int]) -> None:
+        """The counter was set to `counts`, without a step."""
+        self._counts = counts
+
+
+def power_up_pose(parameters: Parameters) -> tuple[float, ...]:
+    """Where the arms of a robot that was just switched on hang: inside the joint limits."""
+    configure = parameters.configure
+    return tuple(
+        min(max(ready + away, low), high)
+        for ready, away, low, high in zip(
+            configure.ready, _POWER_UP, configure.joint_min, configure.joint_max, strict=False
+        )
+    )

@@ -1,0 +1,48 @@
+"""What the board says: its answers in order, and when telemetry is due.
+
+Telemetry comes every 5 ms of board time: half of a knot, so that the host's estimate of the
+queue is never older than that, at 200 messages a second, a tenth of what 921600 baud carry.
+"""
+
+from __future__ import annotations
+
+from deltaviz.link.messages import BoardMessage, Done, HostMessage, Refusal, Refused, Segment
+
+
+class Reports:
+    def __init__(self, period: int) -> None:
+        self._period = period
+        self._said: list[BoardMessage] = []
+        self.ticks_to_telemetry = period
+        self.changed = False  # something that telemetry tells at once
+
+    @property
+    def telemetry_due(self) -> bool:
+        return self.changed or self.ticks_to_telemetry == 0
+
+    def pass_time(self, ticks: int) -> None:
+        self.ticks_to_telemetry -= ticks
+
+    def say(self, message: BoardMessage) -> None:
+        self._said.append(message)
+
+    def telemetry(self, message: BoardMessage) -> None:
+        self._said.append(message)
+        self.changed = False
+        if self.ticks_to_telemetry == 0:
+            self.ticks_to_telemetry = self._period
+
+    def done(self, message: HostMessage) -> None:
+        self._said.append(Done(_name(message)))
+
+    def refuse(self, message: HostMessage, reason: Refusal, *, joint: int | None = None) -> None:
+        index = message.index if isinstance(message, Segment) else None
+        self._said.append(Refused(_name(message), reason, joint=joint, index=index))
+
+    def take(self) -> list[BoardMessage]:
+        said, self._said = self._said, []
+        return said
+
+
+def _name(message: HostMessage) -> str:
+    return type(message).__name__.lower()

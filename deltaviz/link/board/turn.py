@@ -1,0 +1,80 @@
+"""Whether it is a message's turn: epochs, indices, times. Pure; the motion itself is `checks`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from deltaviz.link.board.queue import SegmentQueue
+from deltaviz.link.messages import Arm, BoardState, Refusal, Segment
+from deltaviz.link.rules import (
+    AHEAD_MS,
+    LATE_MS,
+    SEGMENT_MAX_MS,
+    SEGMENT_MIN_MS,
+    since,
+    since16,
+)
+
+
+def arm_refusal(
+    arm: Arm,
+    *,
+    now: int,
+    last_epoch: int,
+    counts: Sequence[int],
+    moving: bool,
+    ticks_per_ms: int,
+) -> Refusal | None:
+    if moving:
+        return Refusal.MOVING
+    if not 0 <= arm.epoch <= 0xFFFF or since16(arm.epoch, last_epoch) <= 0:
+        return Refusal.EPOCH
+    if tuple(arm.counts) != tuple(counts):
+        return Refusal.COUNTS
+    if not _near(arm.t_start, now, ticks_per_ms):
+        return Refusal.TIME
+    return None
+
+
+def segment_refusal(
+    segment: Segment, *, state: BoardState, epoch: int, queue: SegmentQueue
+) -> Refusal | None:
+    """Why a segment is passed over, without harm to what runs."""
+    if state is not BoardState.ARMED:
+        return Refusal.STATE
+    if segment.epoch != epoch:
+        return Refusal.EPOCH
+    if segment.index != queue.next_index:
+        return Refusal.INDEX
+    if queue.free == 0:
+        return Refusal.QUEUE_FULL
+    return None
+
+
+def well_formed(segment: Segment, *, joints: int) -> bool:
+    """One number per joint, all of them within the fields they have on the wire."""
+    return (
+        len(segment.p) == len(segment.v) == joints
+        and all(-0x8000_0000 <= value < 0x8000_0000 for value in (*segment.p, *segment.v))
+        and all(0 <= tick <= 0xFFFF_FFFF for tick in (segment.t_end, segment.seen))
+    )
+
+
+def well_timed(
+    segment: Segment, *, now: int | None, queue: SegmentQueue, ticks_per_ms: int
+) -> bool:
+    """`now` is the present tick when nothing runs and nothing waits, else None."""
+    if not SEGMENT_MIN_MS * ticks_per_ms <= segment.duration <= SEGMENT_MAX_MS * ticks_per_ms:
+        return False
+    start = segment.t_end - segment.duration
+    if now is not None:
+        return _near(start, now, ticks_per_ms)
+    if any(queue.v):
+        return since(start, queue.nominal_end) == 0
+    return (
+        since(start, queue.nominal_end) >= 0 and since(start, queue.end) <= AHEAD_MS * ticks_per_ms
+    )
+
+
+def _near(start: int, now: int, ticks_per_ms: int) -> bool:
+    return -LATE_MS * ticks_per_ms <= since(start, now) <= AHEAD_MS * ticks_per_ms
