@@ -128,7 +128,7 @@ class Homing:
     def referenced(self, positions: Sequence[int]) -> list[int]:
         """What the positions are, now that the switches' angles are known; in whole microsteps."""
         return [
-            (switch + ((position - joint.trigger) >> 32)) << 32
+            (switch + (position >> 32) - (joint.trigger >> 32)) << 32
             for position, joint, switch in zip(
                 positions, self._joints, self._parameters.switch, strict=True
             )
