@@ -90,7 +90,8 @@ def _add_console(app: FastAPI, *, sessions: Sessions, static_dir: Path) -> None:
         sessions.welcome(request, response)
         return response
 
-    app.mount("/", StaticFiles(directory=static_dir))
+    # Not mounted: a mount at "/" would answer 404 where a call with another method is 405.
+    app.router.default = StaticFiles(directory=static_dir)
 
 
 # A page opened by a link of another site comes without its SameSite=Strict cookie; a new

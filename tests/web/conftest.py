@@ -1,0 +1,233 @@
+"""A machine and a scene that record what they are asked, behind the real web application."""
+
+from __future__ import annotations
+
+import asyncio
+import dataclasses
+import threading
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+from fastapi import APIRouter, FastAPI, WebSocket
+from fastapi.responses import HTMLResponse
+from fastapi.testclient import TestClient
+from starlette.requests import HTTPConnection
+from websockets.sync.client import ClientConnection, connect
+
+from deltaviz.machine.intent import Accepted, Answer, Intent
+from deltaviz.machine.mode import Mode
+from deltaviz.machine.snapshot import LinkStatus, Snapshot
+from deltaviz.robots import Robot, load_robot
+from deltaviz.web.app import create_app
+from deltaviz.web.listening import listen
+from deltaviz.web.origin import allowed_hosts
+from deltaviz.web.server import Server
+
+PORT = 8000
+ORIGIN = f"http://127.0.0.1:{PORT}"
+PATIENCE = 20.0  # s; what has not happened by then never will
+
+
+def snapshot_of(robot: Robot) -> Snapshot:
+    """Idle at the ready pose."""
+    theta = robot.homing.ready
+    xyz = tuple(robot.forward(theta).tolist())
+    rest = (0.0,) * robot.joint_count
+    return Snapshot(
+        at=time.monotonic(),
+        robot=robot.name,
+        mode=Mode.IDLE,
+        homed=True,
+        theta=theta,
+        xyz=xyz,
+        theta_speed=rest,
+        xyz_speed=(0.0,) * len(xyz),
+        command_theta=theta,
+        command_xyz=xyz,
+        target_theta=None,
+        target_xyz=None,
+        margins=(1.0,) * robot.joint_count,
+        held_by=(),
+        link=LinkStatus(id="sim", connected=True, age=0.002),
+        holder=None,
+        stop_reason=None,
+        fault=None,
+        override=1.0,
+        next_step=None,
+        board_time=1.0,
+        underruns=0,
+        counts=(0,) * robot.joint_count,
+    )
+
+
+class FakeMachine:
+    """Keeps, in order, what it is told: intents as they are, stops as ("stop", client)."""
+
+    def __init__(self, robot: Robot) -> None:
+        self.robot = robot
+        self.snapshot = snapshot_of(robot)
+        self.told: list[Any] = []
+        self.answer: Answer | Exception | None = Accepted()  # None: it never answers
+
+    def post(self, intent: Intent) -> Future[Answer]:
+        self.told.append(intent)
+        future: Future[Answer] = Future()
+        if isinstance(self.answer, Exception):
+            future.set_exception(self.answer)
+        elif self.answer is not None:
+            future.set_result(self.answer)
+        return future
+
+    def stop(self, client: str, reason: str) -> None:
+        self.told.append(("stop", client))
+
+    def estop(self, client: str, reason: str) -> None:
+        self.told.append(("estop", client))
+
+    def show(self, **changes: Any) -> None:
+        self.snapshot = dataclasses.replace(self.snapshot, **changes)
+
+    def told_of(self, kind: type) -> list[Any]:
+        return [told for told in self.told if isinstance(told, kind)]
+
+
+class FakeScene:
+    def __init__(self) -> None:
+        self.yaw: float | None = None
+        self.themes: list[tuple[str, bool]] = []
+        self.visitors: list[str | None] = []
+        self.holds_control: Callable[[str], bool] = lambda session: False
+
+    def router(
+        self,
+        *,
+        session_of: Callable[[HTTPConnection], str | None],
+        holds_control: Callable[[str], bool],
+    ) -> APIRouter:
+        self.holds_control = holds_control
+        router = APIRouter()
+
+        @router.get("/scene/")
+        async def page() -> HTMLResponse:
+            return HTMLResponse("scene", headers={"Content-Security-Policy": "sandbox"})
+
+        @router.websocket("/scene")
+        async def socket(websocket: WebSocket) -> None:
+            self.visitors.append(session_of(websocket))
+            await websocket.accept()
+            await websocket.close()
+
+        return router
+
+    def camera_yaw(self, session: str) -> float | None:
+        return self.yaw
+
+    def set_theme(self, session: str, dark: bool) -> None:
+        self.themes.append((session, dark))
+
+
+@pytest.fixture(scope="session")
+def robot() -> Robot:
+    return load_robot("stm32")
+
+
+@pytest.fixture
+def machine(robot: Robot) -> FakeMachine:
+    return FakeMachine(robot)
+
+
+@pytest.fixture
+def scene() -> FakeScene:
+    return FakeScene()
+
+
+@pytest.fixture
+def static(tmp_path: Path) -> Path:
+    folder = tmp_path / "static"
+    folder.mkdir()
+    (folder / "index.html").write_text("<!doctype html><title>console</title>")
+    (folder / "main.js").write_text("export {};")
+    (tmp_path / "secret.txt").write_text("secret")
+    return folder
+
+
+@pytest.fixture
+def make_app(machine: FakeMachine, scene: FakeScene, static: Path) -> Callable[..., FastAPI]:
+    def make(*, host: str = "127.0.0.1", port: int = PORT) -> FastAPI:
+        return create_app(
+            machine=machine,
+            scene=scene,
+            allowed_hosts=allowed_hosts(host, port),
+            port=port,
+            static_dir=static,
+        )
+
+    return make
+
+
+@pytest.fixture
+def app(make_app: Callable[..., FastAPI]) -> FastAPI:
+    return make_app()
+
+
+@pytest.fixture
+def client(app: FastAPI) -> Iterator[TestClient]:
+    """A program on this computer: no browser, no cookie."""
+    with TestClient(app, base_url=ORIGIN) as client:
+        yield client
+
+
+def eventually(look: Callable[[], Any], what: str) -> Any:
+    """The first truthy thing seen; polling is not synchronising by sleep."""
+    end = time.monotonic() + PATIENCE
+    while not (seen := look()):
+        assert time.monotonic() < end, f"{what}: not within {PATIENCE:g} s"
+        time.sleep(0.002)
+    return seen
+
+
+class Live:
+    """The application behind a real server on a port the system chose."""
+
+    def __init__(self, make_app: Callable[..., FastAPI]) -> None:
+        self._socket = listen("127.0.0.1", 0)
+        self.port = self._socket.getsockname()[1]
+        self.url = f"http://127.0.0.1:{self.port}"
+        started = threading.Event()
+        self._server = Server(make_app(port=self.port), started_up=started.set)
+        self._thread = threading.Thread(
+            target=lambda: asyncio.run(self._server.serve(sockets=[self._socket]))
+        )
+        self._thread.start()
+        assert started.wait(PATIENCE)
+
+    def page(self) -> str:
+        """A browser's session: the cookie of a page that was opened."""
+        return httpx.get(f"{self.url}/").headers["set-cookie"].split(";")[0]
+
+    def socket(self, cookie: str | None = None, **options: Any) -> ClientConnection:
+        headers = {} if cookie is None else {"Cookie": cookie}
+        address = f"ws://127.0.0.1:{self.port}/ws"
+        return connect(address, additional_headers=headers, compression=None, **options)
+
+    def close(self) -> None:
+        self._server.should_exit = True
+        self._thread.join(PATIENCE)
+        assert not self._thread.is_alive()
+
+
+@pytest.fixture
+def live(make_app: Callable[..., FastAPI]) -> Iterator[Live]:
+    server = Live(make_app)
+    yield server
+    server.close()
+
+
+@pytest.fixture(name="eventually")
+def eventually_fixture() -> Callable[[Callable[[], Any], str], Any]:
+    return eventually
