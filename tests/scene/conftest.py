@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import socket
 import threading
@@ -52,13 +53,16 @@ class FakeMachine:
     """Takes every intent (or refuses every one) and is at once where it was told to be."""
 
     def __init__(self, robot: Robot) -> None:
-        self.robot = robot
+        self._first = robot
+        self.begin_anew()
+
+    def begin_anew(self) -> None:
+        self.robot = self._first
         self.posted: list[Intent] = []
         self.refusal: str | None = None
         self.holder: str | None = None
         self.follows = True
-        low, high = robot.workspace.z
-        self.snapshot = self._at((0.0, 0.0, (low + high) / 2))
+        self.snapshot = self._at((0.0, 0.0, sum(self.robot.workspace.z) / 2))
 
     def _at(self, xyz: tuple[float, ...], **changes: Any) -> Snapshot:
         theta = tuple(float(angle) for angle in self.robot.inverse(xyz))
@@ -165,7 +169,9 @@ class Visitor:
             additional_headers=headers,
             max_size=None,
             compression=None,
+            close_timeout=0.2,
         )
+        self.inputs: dict[str, str] = {}
         self.seen: list[dict[str, Any]] = []
 
     def send(self, **message: Any) -> None:
@@ -186,12 +192,16 @@ class Visitor:
             assert isinstance(data, bytes)
             size = int.from_bytes(data[8:16], "little")
             plain = zstandard.ZstdDecompressor().decompress(data[16 : 16 + size])
-            self.seen += msgspec.msgpack.decode(plain)["messages"]
+            self.seen += (messages := msgspec.msgpack.decode(plain)["messages"])
+            for message in messages:
+                if label := message.get("props", {}).get("label"):
+                    self.inputs[label] = message["uuid"]
 
     def input(self, label: str) -> str:
         """The uuid of the input with this label."""
-        message = self.read(lambda m: m.get("props", {}).get("label") == label)
-        return message["uuid"]
+        if label not in self.inputs:
+            self.read(lambda _: label in self.inputs)
+        return self.inputs[label]
 
     def closed(self, within: float = 5.0) -> tuple[int, str]:
         """Wait until the server closes the connection; its code and reason."""
@@ -259,21 +269,12 @@ def other_robot(robot: Robot) -> Robot:
     return dataclasses.replace(robot, name="other", mechanism=mechanism, workspace=workspace)
 
 
-@pytest.fixture
-def machine(robot: Robot) -> FakeMachine:
-    return FakeMachine(robot)
-
-
-@pytest.fixture
-def scene(machine: FakeMachine) -> Iterator[Scene]:
+@contextlib.contextmanager
+def standing(robot: Robot) -> Iterator[Stand]:
+    """A scene of its own, served on a free port."""
+    machine = FakeMachine(robot)
     scene = Scene(machine)
     scene.start()
-    yield scene
-    scene.close()
-
-
-@pytest.fixture
-def stand(machine: FakeMachine, scene: Scene) -> Iterator[Stand]:
     app = FastAPI()
     app.include_router(
         scene.router(
@@ -282,13 +283,37 @@ def stand(machine: FakeMachine, scene: Scene) -> Iterator[Stand]:
         )
     )
     listening = socket.create_server(("127.0.0.1", 0))
-    server = uvicorn.Server(uvicorn.Config(app, log_level="warning"))
+    server = uvicorn.Server(uvicorn.Config(app, log_level="warning", lifespan="off"))
     thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]}, daemon=True)
     thread.start()
     eventually(lambda: server.started)
-    yield Stand(machine=machine, scene=scene, port=listening.getsockname()[1])
-    server.should_exit = server.force_exit = True
-    thread.join(5.0)
+    try:
+        yield Stand(machine=machine, scene=scene, port=listening.getsockname()[1])
+    finally:
+        server.should_exit = server.force_exit = True
+        thread.join(5.0)
+        scene.close()
+
+
+@pytest.fixture(scope="module")
+def shared_stand() -> Iterator[Stand]:
+    with standing(load_robot("stm32")) as stand:
+        yield stand
+
+
+@pytest.fixture
+def stand(shared_stand: Stand) -> Stand:
+    """The module's scene, with nobody there and the machine as it was at first."""
+    shared_stand.eventually(lambda: not shared_stand.server.get_clients())
+    shared_stand.machine.begin_anew()
+    return shared_stand
+
+
+@pytest.fixture
+def own_stand(robot: Robot) -> Iterator[Stand]:
+    """A scene of the test's own, for tests that leave it changed."""
+    with standing(robot) as stand:
+        yield stand
 
 
 @pytest.fixture
