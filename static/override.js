@@ -15,7 +15,7 @@ const ECHO_MS = 600;
 /** @param {{store: Store, connection: Connection}} parts */
 export function addOverride({ store, connection }) {
   const slider = byId("override", HTMLInputElement);
-  const text = byId("override-text", HTMLOutputElement);
+  const text = byId("override-text", HTMLElement);
   let touched = -Infinity;
   let held = false;
   /** @type {number | undefined} */

@@ -16,7 +16,7 @@ export function addRobotChoice({ store, watch }) {
     select.addEventListener("change", () => {
       const robot = select.value;
       select.value = store.state?.robot ?? robot;
-      select.blur();
+      leave(select);
       watch(post("robot", { robot }));
     });
   }
@@ -45,7 +45,7 @@ export class LinkChoice {
       const connected = store.state?.link.connected;
       watch(connected ? post("disconnect") : post("connect", { link: this.#select.value }));
     });
-    this.#select.addEventListener("change", () => this.#select.blur());
+    this.#select.addEventListener("change", () => leave(this.#select));
     store.addView(() => {
       const link = store.state?.link;
       setText(this.#button, link?.connected ? "Disconnect" : "Connect");
@@ -64,4 +64,13 @@ export class LinkChoice {
     );
     this.#select.replaceChildren(...options);
   }
+}
+
+/**
+ * After a choice by pointer the arrow keys are for jogging again; who chose by keyboard stays.
+ *
+ * @param {HTMLSelectElement} select
+ */
+function leave(select) {
+  if (!select.matches(":focus-visible")) select.blur();
 }

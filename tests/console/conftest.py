@@ -7,12 +7,13 @@ import json
 import threading
 import time
 from collections.abc import Callable, Iterator
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import pytest
 import uvicorn
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, Page, sync_playwright
 from starlette.applications import Starlette
 from starlette.requests import Request
 from starlette.responses import HTMLResponse, JSONResponse, Response
@@ -242,16 +243,29 @@ def browser() -> Iterator[Browser]:
         browser.close()
 
 
+@pytest.fixture(scope="session")
+def context(browser: Browser) -> Callable[..., BrowserContext]:
+    """One context for each set of options: making one takes longer than most tests."""
+
+    @cache
+    def make(**options: Any) -> BrowserContext:
+        return browser.new_context(**options)
+
+    return make
+
+
 @pytest.fixture
-def open_page(browser: Browser, machine: Machine, url: str) -> Iterator[Callable[..., Page]]:
+def open_page(
+    context: Callable[..., BrowserContext], machine: Machine, url: str
+) -> Iterator[Callable[..., Page]]:
     """Opens the console, connected and drawn; fails the test on any error on the page."""
-    contexts = []
+    pages: list[Page] = []
     errors: list[str] = []
 
     def open_(width: int = 1280, height: int = 800, **options: Any) -> Page:
-        context = browser.new_context(viewport={"width": width, "height": height}, **options)
-        contexts.append(context)
-        page = context.new_page()
+        page = context(**options).new_page()
+        page.set_viewport_size({"width": width, "height": height})
+        pages.append(page)
         page.on("pageerror", lambda error: errors.append(str(error)))
         page.on("console", lambda m: errors.append(m.text) if "Content Security" in m.text else None)
         page.goto(url + "/")
@@ -263,6 +277,7 @@ def open_page(browser: Browser, machine: Machine, url: str) -> Iterator[Callable
         return page
 
     yield open_
-    for context in contexts:
-        context.close()
+    for page in pages:
+        page.evaluate("localStorage.clear()")
+        page.close()
     assert errors == []
