@@ -1,0 +1,296 @@
+"""A judge of executed motion, and what drives a follower for it.
+
+The judge shares no code with what it judges: it reads the preset's file itself, has kinematics
+of its own (the constraint equations, solved by numpy) and samples the cubics between the knots.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import deltaviz.robots
+from deltaviz.motion.follower import Follower
+from deltaviz.motion.goal import (
+    AtJointVelocity,
+    AtVelocity,
+    Goal,
+    Rest,
+    ToAngles,
+    ToPoint,
+)
+from deltaviz.motion.knot import Knot
+from deltaviz.robots import Robot, load_robot
+
+Array = NDArray[np.float64]
+PRESETS = Path(deltaviz.robots.__file__).parent / "presets"
+PERIOD = 0.010
+SAMPLES = 11  # of each segment: 1 kHz
+BRAKE_SAMPLES = 24
+LENGTH = 0.01  # mm; what a limit of place may be passed by
+ROUNDING = 1e-9  # of a limit of velocity or acceleration
+
+
+class Delta:
+    """The rotary delta of a preset: numbers of its file, kinematics from the constraints."""
+
+    def __init__(self, name: str) -> None:
+        file = tomllib.loads((PRESETS / f"{name}.toml").read_text())
+        self.file = file
+        shape = file["geometry"]
+        base = shape.get("base_radius", shape.get("base_side", 0.0) / (2 * 3**0.5))
+        tool = shape.get("effector_radius", shape.get("effector_side", 0.0) / (2 * 3**0.5))
+        self.inset = base - tool
+        self.upper, self.fore = float(shape["upper_arm"]), float(shape["forearm"])
+        azimuth = np.radians(shape["azimuths_deg"])
+        self.out = np.stack([np.cos(azimuth), np.sin(azimuth), 0 * azimuth], axis=-1)
+        self.side = np.stack([-np.sin(azimuth), np.cos(azimuth), 0 * azimuth], axis=-1)
+        self.down = np.array([0.0, 0.0, -1.0])
+
+    def elbows(self, theta: Array) -> Array:
+        """Elbows moved inwards by the effector's radius, (..., 3, 3)."""
+        cos, sin = np.cos(theta)[..., None], np.sin(theta)[..., None]
+        return self.out * self.inset + self.upper * (cos * self.out + sin * self.down)
+
+    def turning(self, theta: Array) -> tuple[Array, Array]:
+        """First and second derivative of the elbows by their angles."""
+        cos, sin = np.cos(theta)[..., None], np.sin(theta)[..., None]
+        return (
+            self.upper * (cos * self.down - sin * self.out),
+            -self.upper * (cos * self.out + sin * self.down),
+        )
+
+    def tip(self, theta: Array) -> Array:
+        """Where three spheres of the forearm's length about the elbows meet, below them."""
+        one, two, three = np.moveaxis(self.elbows(theta), -2, 0)
+        ex = two - one
+        far = np.linalg.norm(ex, axis=-1, keepdims=True)
+        ex = ex / far
+        along = (ex * (three - one)).sum(-1, keepdims=True)
+        ey = three - one - along * ex
+        across = np.linalg.norm(ey, axis=-1, keepdims=True)
+        ey = ey / across
+        ez = np.cross(ex, ey)
+        x = far / 2
+        y = (along**2 + across**2 - 2 * along * x) / (2 * across)
+        height = np.sqrt(self.fore**2 - x**2 - y**2)
+        sign = np.where(ez[..., 2:] > 0, -1.0, 1.0)
+        return one + x * ex + y * ey + sign * height * ez
+
+    def motion(self, theta: Array, rate: Array, turn: Array) -> tuple[Array, Array, Array]:
+        """Tip, its velocity and acceleration: S·(v - D'w) = 0 and its derivative, solved."""
+        tip = self.tip(theta)
+        rods = tip[..., None, :] - self.elbows(theta)
+        first, second = self.turning(theta)
+        slide = first * rate[..., None]
+        velocity = np.linalg.solve(rods, (rods * slide).sum(-1)[..., None])[..., 0]
+        swing = velocity[..., None, :] - slide
+        push = first * turn[..., None] + second * rate[..., None] ** 2
+        right = (rods * push).sum(-1) - (swing**2).sum(-1)
+        return tip, velocity, np.linalg.solve(rods, right[..., None])[..., 0]
+
+    def broken(self, theta: Array) -> dict[str, Array]:
+        """By how much (mm) each limit of place is broken at poses (N, 3); at most 0 if not."""
+        file = self.file
+        tip = self.tip(theta)
+        rods = tip[..., None, :] - self.elbows(theta)
+        first, _ = self.turning(theta)
+        joints, space = file["joints"], file["workspace"]
+        low, high = np.radians(joints["min_deg"]), np.radians(joints["max_deg"])
+        sideways = np.abs((rods * self.side).sum(-1))
+        most = self.fore * np.sin(np.radians(joints["ball_joint_max_deg"]))
+        place = tip - np.asarray(file["geometry"].get("tool_offset", [0, 0, 0])) * -1.0
+        result = {
+            "finite": np.where(np.isfinite(tip).all(-1), -1.0, 1e9),
+            "joint range": np.maximum(low - theta, theta - high).max(-1) * self.upper,
+            "ball joint": (sideways - most).max(-1),
+            "elbow outside": -(rods * first).sum(-1).min(-1) / self.fore,
+            "assembly": np.linalg.det(rods) / self.fore**2,
+        }
+        for axis, name in enumerate("xyz"):
+            if name in space:
+                low, high = space[name]
+                result[name] = np.maximum(low - place[..., axis], place[..., axis] - high)
+        if "radius" in space:
+            result["radius"] = np.hypot(place[..., 0], place[..., 1]) - space["radius"]
+        return result
+
+
+@dataclass
+class Ride:
+    """What was executed: the knots, and which segments were commanded (not braked)."""
+
+    robot: Robot
+    start: Array
+    knots: list[Knot] = field(default_factory=list)
+    commanded: list[bool] = field(default_factory=list)
+    switches: int = 0
+
+
+@dataclass
+class Finding:
+    """Each broken limit with the worst excess, and the peaks as shares of the limits."""
+
+    broken: dict[str, float]
+    peaks: dict[str, float]
+
+
+class Judge:
+    """Judges rides of one preset."""
+
+    def __init__(self, name: str) -> None:
+        self.delta = Delta(name)
+        limits = self.delta.file["limits"]
+        self.rate = np.radians(limits["joint"]["velocity_deg_s"])
+        self.turn = np.radians(limits["joint"]["acceleration_deg_s2"])
+        self.speed = limits["cartesian"]["velocity"]
+        self.thrust = limits["cartesian"]["acceleration"]
+        self.jerk = limits["cartesian"]["jerk"]
+
+    def __call__(self, ride: Ride) -> Finding:
+        theta = np.array([ride.start, *(k.theta for k in ride.knots)])
+        rate = np.array([np.zeros_like(ride.start), *(k.velocity for k in ride.knots)])
+        time = np.array([k.duration for k in ride.knots])[:, None]
+        commanded = np.array(ride.commanded)
+        poses, rates, turns = _cubics(theta, rate, time)
+        tip, velocity, acceleration = self.delta.motion(poses, rates, turns)
+        speed = np.linalg.norm(velocity, axis=-1)[commanded]
+        thrust = np.linalg.norm(acceleration, axis=-1)[commanded]
+        peaks = {
+            "joint velocity": float(np.abs(rates).max() / self.rate),
+            "joint acceleration": float(np.abs(turns).max() / self.turn),
+            "tip velocity": float(speed.max(initial=0) / self.speed),
+            "tip acceleration": float(thrust.max(initial=0) / self.thrust),
+            "tip jerk": self._jerk(tip[:, -1], time[:, 0], commanded),
+        }
+        broken = {k: v - 1 for k, v in peaks.items() if not v <= 1 + ROUNDING}
+        self._place(broken, "", poses.reshape(-1, poses.shape[-1]))
+        self._place(broken, "brake: ", self._brakes(theta, rate))
+        if rate[-1].any():
+            broken["at rest"] = 1.0
+        return Finding(broken, peaks)
+
+    def _place(self, broken: dict[str, float], what: str, poses: Array) -> None:
+        for name, excess in self.delta.broken(poses).items():
+            worst = float(np.where(np.isnan(excess), np.inf, excess).max())
+            if worst > LENGTH:
+                broken[what + name] = worst
+
+    def _brakes(self, theta: Array, rate: Array) -> Array:
+        time = (np.abs(rate) / self.turn).max(-1)[:, None, None]
+        share = np.linspace(0, 1, BRAKE_SAMPLES)[None, :, None]
+        path = theta[:, None] + rate[:, None] * time * (share - share**2 / 2)
+        return path.reshape(-1, theta.shape[-1])
+
+    def _jerk(self, tip: Array, time: Array, commanded: Array) -> float:
+        """The third difference over equal segments is a mean of the plan's jerk."""
+        if len(tip) < 4:
+            return 0.0
+        third = tip[3:] - 3 * tip[2:-1] + 3 * tip[1:-2] - tip[:-3]
+        fine = np.ones(len(third), dtype=bool)
+        for k in range(4):
+            fine &= commanded[k : len(third) + k] & np.isclose(time[k : len(third) + k], PERIOD)
+        jerk = np.linalg.norm(third, axis=-1)[fine] / PERIOD**3
+        return float(jerk.max(initial=0) / self.jerk)
+
+
+def _cubics(theta: Array, rate: Array, time: Array) -> tuple[Array, Array, Array]:
+    """Hermite's basis: angles, velocities, accelerations (K, SAMPLES, n)."""
+    u = np.linspace(0, 1, SAMPLES)[None, :, None]
+    t = time[:, :, None]
+    p0, p1 = theta[:-1, None], theta[1:, None]
+    m0, m1 = rate[:-1, None] * t, rate[1:, None] * t
+    angle = (
+        (2 * u**3 - 3 * u**2 + 1) * p0
+        + (u**3 - 2 * u**2 + u) * m0
+        + (3 * u**2 - 2 * u**3) * p1
+        + (u**3 - u**2) * m1
+    )
+    slope = (6 * u**2 - 6 * u) * (p0 - p1) + (3 * u**2 - 4 * u + 1) * m0 + (3 * u**2 - 2 * u) * m1
+    bend = (12 * u - 6) * (p0 - p1) + (6 * u - 4) * m0 + (6 * u - 2) * m1
+    return angle, slope / t, bend / t**2
+
+
+def random_goal(robot: Robot, delta: Delta, rng: np.random.Generator, mode: str) -> Goal:
+    """One target of a kind: "inside", "edge", "far", "angles", "jog", "turn" or "mixed"."""
+    if mode == "mixed":
+        kinds = ["inside", "edge", "far", "angles", "jog", "turn", "rest"]
+        mode = str(rng.choice(kinds))
+    space = delta.file["workspace"]
+    low, high = space["z"]
+    width = space.get("radius", max(abs(v) for v in space.get("x", [100])))
+    speed = float(rng.choice([1.0, 1.0, 0.5]))
+    match mode:
+        case "inside":
+            angle, out = rng.uniform(0, 2 * np.pi), width * np.sqrt(rng.uniform(0, 0.8))
+            place = out * np.cos(angle), out * np.sin(angle), rng.uniform(low, high)
+            return ToPoint(tuple(map(float, place)), speed)
+        case "edge":
+            way = rng.normal(size=3)
+            way *= width * rng.uniform(0.9, 1.4) / np.linalg.norm(way)
+            return ToPoint(tuple(map(float, way + [0, 0, (low + high) / 2])), speed)
+        case "far":
+            return ToPoint(tuple(rng.uniform([-900, -900, -1500], [900, 900, 100]).tolist()))
+        case "angles":
+            joints = delta.file["joints"]
+            span = np.radians(joints["min_deg"]) - 0.1, np.radians(joints["max_deg"]) + 0.1
+            return ToAngles(tuple(rng.uniform(*span, size=3).tolist()), speed)
+        case "jog":
+            limit = delta.file["limits"]["cartesian"]["velocity"]
+            return AtVelocity(tuple((rng.normal(size=3) * limit * 0.7).tolist()))
+        case "turn":
+            limit = np.radians(delta.file["limits"]["joint"]["velocity_deg_s"])
+            signs = rng.choice([-1.0, 0.0, 1.0], size=3)
+            return AtJointVelocity(tuple((signs * limit * rng.choice([0.5, 1.2])).tolist()))
+        case _:
+            return Rest()
+
+
+def ride(
+    name: str, *, seed: int, mode: str, ticks: int, hold: tuple[int, int] = (2, 60),
+    clock: Callable[[], float] = lambda: 0.0, budget: float = 1.0,
+) -> Ride:  # fmt: skip
+    """Random targets, each held for a random number of ticks; at the end the brake, to rest."""
+    robot = load_robot(name)
+    delta = Delta(name)
+    rng = np.random.default_rng(seed)
+    follower = Follower(robot, robot.homing.ready, clock=clock, budget=budget)
+    done = Ride(robot, np.array(robot.homing.ready))
+    goal: Goal = Rest()
+    left = 0
+    override = 1.0
+    for _ in range(ticks):
+        if left == 0:
+            goal = random_goal(robot, delta, rng, mode)
+            left = int(rng.integers(*hold))
+            override = float(rng.choice([1.0, 1.0, 1.5, 0.6, 0.0])) if mode == "mixed" else 1.0
+            done.switches += 1
+        left -= 1
+        _advance(done, follower, goal, override)
+    for _ in range(200):
+        if follower.resting:
+            break
+        _advance(done, follower, Rest(), 1.0)
+    return done
+
+
+def _advance(done: Ride, follower: Follower, goal: Goal, override: float) -> None:
+    done.knots.append(follower.step(goal, override=override))
+    done.commanded.append(not follower.braking)
+
+
+@pytest.fixture(scope="session")
+def judge() -> Callable[[str], Judge]:
+    return Judge
+
+
+@pytest.fixture(scope="session")
+def take_ride() -> Callable[..., Any]:
+    return ride
