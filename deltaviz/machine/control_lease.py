@@ -37,16 +37,17 @@ class ControlLease:
         self._free()
         return True
 
-    def admit(self, client: str, *, at_rest: bool) -> str | None:
-        """An input of `client`'s: it takes control that nobody holds. The refusal, or None."""
+    def refusal(self, client: str, *, at_rest: bool) -> str | None:
+        """Why an input of `client`'s is not taken, or None."""
         if self._holder == client:
             return None
         if self._holder is not None:
             return ELSEWHERE
-        if not at_rest:
-            return MOVES
+        return None if at_rest else MOVES
+
+    def take(self, client: str) -> None:
+        """An input of `client`'s was taken: it holds control."""
         self._holder = client
-        return None
 
     def request(self, client: str, *, at_rest: bool) -> str | None:
         """Ask for control outright: given at rest, whoever held it. The refusal, or None."""

@@ -1,0 +1,106 @@
+"""What the host has sent of a motion and the board has not yet run: one epoch's segments.
+
+Knots become integers here, each from its absolute position, so rounding never adds up: a knot is
+at most half of 2^-10 microsteps off, the tenth and the millionth alike.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Sequence
+
+from deltaviz.link.messages import Arm, Segment, Telemetry
+from deltaviz.link.rules import since, since16
+from deltaviz.motion.knot import Knot
+
+POSITION_UNIT = 1024  # per microstep
+VELOCITY_UNIT = 65536 / 1000  # per microstep per second
+
+
+class Flight:
+    """One epoch, from its arming on. Angles are counts / `microsteps_per_rad`."""
+
+    def __init__(
+        self,
+        *,
+        epoch: int,
+        telemetry: Telemetry,
+        tick_hz: int,
+        microsteps_per_rad: Sequence[float],
+    ) -> None:
+        self.epoch = epoch
+        self._tick_hz = tick_hz
+        self._scale = tuple(microsteps_per_rad)
+        self._counts = telemetry.counts
+        self._started = telemetry.now
+        self._index = 0
+        self._t_end = telemetry.now
+        self._resting = True
+        self._unseen: deque[tuple[int, int]] = deque()  # index, duration of what has no receipt
+        self.theta = tuple(
+            count / scale for count, scale in zip(self._counts, self._scale, strict=True)
+        )
+        self.velocity = tuple(0.0 for _ in self._counts)
+
+    @property
+    def resting(self) -> bool:
+        """Whether the last knot sent is at rest: then the queue may run dry."""
+        return self._resting
+
+    def arm(self) -> Arm:
+        return Arm(epoch=self.epoch, t_start=self._started, counts=self._counts)
+
+    def segment(self, knot: Knot, telemetry: Telemetry) -> Segment:
+        """`knot` on the wire. From rest it starts at the board's present tick, that is, at once."""
+        duration = round(knot.duration * self._tick_hz)
+        start = self._t_end
+        if self._resting and since(telemetry.now, start) > 0:
+            start = telemetry.now
+        segment = Segment(
+            epoch=self.epoch,
+            index=self._index,
+            t_end=(start + duration) & 0xFFFF_FFFF,
+            duration=duration,
+            seen=telemetry.now,
+            p=tuple(
+                round(angle * scale * POSITION_UNIT)
+                for angle, scale in zip(knot.theta, self._scale, strict=True)
+            ),
+            v=tuple(
+                round(rate * scale * VELOCITY_UNIT)
+                for rate, scale in zip(knot.velocity, self._scale, strict=True)
+            ),
+        )
+        self._unseen.append((segment.index, duration))
+        self._index = (self._index + 1) & 0xFFFF
+        self._t_end = segment.t_end
+        self._resting = not any(segment.v)
+        self.theta, self.velocity = knot.theta, knot.velocity
+        return segment
+
+    def acknowledge(self, telemetry: Telemetry) -> None:
+        """Forget what `telemetry` says has been taken into the queue."""
+        if not self._is_armed(telemetry):
+            return
+        # "None taken yet" is 65535, one before the first index: it acknowledges nothing here.
+        while self._unseen and since16(telemetry.last_index, self._unseen[0][0]) >= 0:
+            self._unseen.popleft()
+
+    def ahead(self, telemetry: Telemetry, *, elapsed: float) -> float:
+        """Seconds of motion that the board still has, `elapsed` s after `telemetry` came."""
+        queued = since(telemetry.t_queue_end, telemetry.now) if self._is_armed(telemetry) else 0
+        ticks = max(0, queued) + sum(duration for _, duration in self._unseen)
+        return max(0.0, ticks / self._tick_hz - elapsed)
+
+    def free(self, telemetry: Telemetry) -> int:
+        """Places in the board's queue that nothing sent will take."""
+        return telemetry.free - len(self._unseen)
+
+    def all_taken(self, telemetry: Telemetry) -> bool:
+        """Whether the board has all that was sent, and has run it."""
+        if self._unseen or not self._is_armed(telemetry):
+            return not self._unseen and self._index == 0
+        return since(telemetry.t_queue_end, telemetry.now) <= 0
+
+    def _is_armed(self, telemetry: Telemetry) -> bool:
+        return telemetry.epoch == self.epoch

@@ -1,0 +1,264 @@
+"""The machine's process: the control loop around the controller, its pipes and its link.
+
+Started by `MachineClient` with the descriptors of two sockets: stops, which are read before all
+else, and talk (intents in; answers and snapshots out). End of file on either, or SIGTERM, brings
+the robot to rest and ends the process.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import gc
+import os
+import signal
+import socket
+import sys
+import time
+import traceback
+from functools import partial
+from multiprocessing.connection import wait
+from typing import Any
+
+from deltaviz.link.transport import LinkError, Transport
+from deltaviz.link.urls import open_link
+from deltaviz.machine import intent as i
+from deltaviz.machine.controller import Controller
+from deltaviz.machine.core import CloseLink, OpenLink
+from deltaviz.machine.drive import warm_up
+from deltaviz.machine.frames import FrameReader, FrameWriter
+from deltaviz.machine.loop_stats import Periods
+from deltaviz.machine.transitions import MOVING
+from deltaviz.machine.wire import (
+    BEGINS_MOTION,
+    STOPPED_SINCE,
+    Answered,
+    Failed,
+    Halt,
+    Posted,
+    Setup,
+    StatsRequest,
+)
+from deltaviz.robots import Robot, load_robot
+
+MOVING_WAIT = 0.002  # s
+IDLE_WAIT = 0.020
+SNAPSHOT_PERIOD = 0.012  # s while something changes
+SNAPSHOT_IDLE = 0.100
+REST_WITHIN = 1.2  # s for coming to rest at the end; then the board's own lease has to do
+NICE = -10
+
+
+class Process:
+    """One machine, until its parent is gone."""
+
+    def __init__(
+        self, *, stops: socket.socket, talk: socket.socket, reader: FrameReader, setup: Setup
+    ) -> None:
+        self._stop_socket, self._talk_socket = stops, talk
+        self._stops = FrameReader(stops)
+        self._talk_in = reader
+        self._talk_out = FrameWriter(talk)
+        self._links = setup.links
+        loaders = {key: partial(load, source) for key, source in setup.robots.items()}
+        self._controller = Controller(
+            loaders[setup.robot](),
+            robot_id=setup.robot,
+            robots=loaders,
+            link=setup.link,
+            links=tuple(setup.links),
+        )
+        self._transport: Transport | None = None
+        self._stopped_after = 0
+        self._ends: float | None = None  # when it ends at the latest
+        self.told_to_end = False  # by a signal, which may come in the middle of anything
+        self._changed = True
+        self._pictured = float("-inf")
+        self._shown: object = None
+        self._periods = Periods()
+        self._ticked: float | None = None
+
+    def _end(self, reason: str) -> None:
+        """Brake; once at rest, `run` returns."""
+        if self._ends is None:
+            now = time.monotonic()
+            self._ends = now + REST_WITHIN
+            self._controller.stop(reason, now)
+
+    def run(self) -> None:
+        try:
+            while not self._over():
+                self._turn()
+                if not self._controller.hungry(time.monotonic()):
+                    self._wait()
+        finally:
+            self._close_link()
+
+    def tell_failure(self, problem: str) -> None:
+        """The last words to the parent, after an error."""
+        if self._transport is not None:
+            self._transport.close()
+        self._talk_out.send(Failed(problem))
+
+    def _over(self) -> bool:
+        if self._ends is None:
+            return False
+        return self._controller.at_rest or time.monotonic() >= self._ends
+
+    def _turn(self) -> None:
+        if self.told_to_end:
+            self._end("The machine was told to end.")
+        self._read_stops()
+        self._read_intents()
+        now = time.monotonic()
+        self._receive(now)
+        moving = self._controller.mode in MOVING
+        if moving and self._ticked is not None:
+            self._periods.add(now - self._ticked)
+        self._ticked = now if moving else None
+        messages = self._controller.tick(now)
+        if self._transport is not None:
+            for message in messages:
+                self._transport.send(message)
+        self._follow_link_action()
+        self._show(now)
+
+    def _read_stops(self) -> None:
+        for halt in self._stops.read():
+            self._halt(halt)
+        if self._stops.closed:
+            self._end("The program that ran the robot is gone.")
+
+    def _halt(self, halt: Halt) -> None:
+        now = time.monotonic()
+        self._stopped_after = max(self._stopped_after, halt.after)
+        if isinstance(halt.what, i.EStop):
+            self._controller.estop(halt.what.reason, now)
+        else:
+            self._controller.stop(halt.what.reason, now)
+        self._changed = True
+
+    def _read_intents(self) -> None:
+        for posted in self._talk_in.read():
+            self._read_stops()  # one that came while these were taken goes first
+            self._talk_out.send(Answered(posted.number, self._answer(posted)))
+            self._changed = True
+        if self._talk_in.closed:
+            self._end("The program that ran the robot is gone.")
+
+    def _answer(self, posted: Posted) -> Any:
+        what = posted.what
+        if isinstance(what, StatsRequest):
+            stats = self._periods.stats(
+                underruns=self._controller.snapshot(time.monotonic()).underruns
+            )
+            self._periods.reset()
+            return stats
+        if isinstance(what, BEGINS_MOTION) and (
+            posted.number <= self._stopped_after or self._ends is not None
+        ):
+            return STOPPED_SINCE
+        return self._controller.handle(what, time.monotonic())
+
+    def _receive(self, now: float) -> None:
+        transport = self._transport
+        if transport is None:
+            return
+        self._controller.receive(transport.receive(), now)
+        if transport.closed:
+            problem = transport.problem or "The link was closed. Connect again."
+            self._transport = None
+            transport.close()
+            self._controller.link_failed(problem, now)
+
+    def _follow_link_action(self) -> None:
+        action = self._controller.link_action()
+        if isinstance(action, CloseLink | OpenLink):
+            self._close_link()
+        if isinstance(action, OpenLink) and self._ends is None:
+            try:
+                self._transport = open_link(self._links[action.link], action.robot)
+            except LinkError as error:
+                self._controller.link_failed(str(error), time.monotonic())
+            else:
+                self._controller.link_opened(time.monotonic())
+            self._changed = True
+
+    def _close_link(self) -> None:
+        if self._transport is not None:
+            self._transport.close()
+            self._transport = None
+
+    def _show(self, now: float) -> None:
+        """Tell the parent what there is to see; if it is slow, only the newest."""
+        self._talk_out.pump()
+        moving = self._controller.mode in MOVING
+        due = SNAPSHOT_PERIOD if moving or self._changed else SNAPSHOT_IDLE
+        if now - self._pictured < due:
+            return
+        snapshot = self._controller.snapshot(now)
+        shown = (snapshot.mode, snapshot.counts, snapshot.link.connected, snapshot.holder)
+        self._changed = shown != self._shown  # show what follows a change soon, too
+        self._shown = shown
+        self._pictured = now
+        self._talk_out.send_newest(snapshot)
+
+    def _wait(self) -> None:
+        sources: list[Any] = [self._stop_socket, self._talk_socket]
+        if self._ends is not None:
+            sources = []  # at their end these would be readable all the time
+        if self._transport is not None and self._transport.fileno() >= 0:
+            sources.append(self._transport)
+        timeout = MOVING_WAIT if self._controller.mode in MOVING else IDLE_WAIT
+        if self._ends is not None:
+            timeout = MOVING_WAIT
+        if sources:
+            wait(sources, timeout)
+        else:
+            time.sleep(timeout)
+
+
+def load(source: str) -> Robot:
+    """The robot, with all compiled that the loop will call."""
+    robot = load_robot(source)
+    warm_up(robot)
+    return robot
+
+
+def main() -> int:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the parent's to act on
+    stops, talk = (socket.socket(fileno=int(argument)) for argument in sys.argv[1:3])
+    with contextlib.suppress(OSError, AttributeError):  # not everywhere, nor to everyone
+        os.setpriority(os.PRIO_PROCESS, 0, NICE)
+    reader = FrameReader(talk)
+    setup = _read_setup(talk, reader)
+    process = None
+    try:
+        process = Process(stops=stops, talk=talk, reader=reader, setup=setup)
+        signal.signal(signal.SIGTERM, partial(_tell_to_end, process))
+        gc.collect()
+        gc.freeze()
+        process.run()
+    except Exception as error:
+        traceback.print_exc()
+        if process is not None:
+            process.tell_failure(f"{type(error).__name__}: {error}")
+        return 1
+    return 0
+
+
+def _tell_to_end(process: Process, *_: object) -> None:
+    process.told_to_end = True
+
+
+def _read_setup(talk: socket.socket, reader: FrameReader) -> Setup:
+    while True:
+        wait([talk], 1.0)
+        setup = reader.read_one()
+        if setup is not None:
+            return setup
+        if reader.closed:
+            raise SystemExit(0)  # the parent was gone before it began
+
+
+if __name__ == "__main__":
+    sys.exit(main())
