@@ -28,50 +28,51 @@ class Objection:
     joint: int | None = None
 
 
-@dataclass(frozen=True, slots=True)
 class JointCubic:
     """One joint's cubic in microsteps and seconds; the acceleration is linear in time."""
 
-    p0: float
-    p1: float
-    v0: float
-    v1: float
-    seconds: float
+    __slots__ = ("a0", "a1", "p0", "p1", "seconds", "v0", "v1")
+
+    def __init__(self, p0: float, p1: float, v0: float, v1: float, seconds: float) -> None:
+        mean = 6 * (p1 - p0) / (seconds * seconds)
+        self.p0, self.p1, self.v0, self.v1, self.seconds = p0, p1, v0, v1, seconds
+        self.a0 = mean - (4 * v0 + 2 * v1) / seconds
+        self.a1 = (2 * v0 + 4 * v1) / seconds - mean
 
     @property
-    def accelerations(self) -> tuple[float, float]:
-        h = self.seconds
-        mean = 6 * (self.p1 - self.p0) / (h * h)
-        return mean - (4 * self.v0 + 2 * self.v1) / h, (2 * self.v0 + 4 * self.v1) / h - mean
-
-    def position(self, t: float) -> float:
-        a0, a1 = self.accelerations
-        return self.p0 + t * (self.v0 + t * (a0 / 2 + t * (a1 - a0) / (6 * self.seconds)))
+    def top_acceleration(self) -> float:
+        return max(abs(self.a0), abs(self.a1))
 
     @property
     def top_speed(self) -> float:
-        a0, a1 = self.accelerations
         top = max(abs(self.v0), abs(self.v1))
-        if a0 * a1 < 0:
-            top = max(top, abs(self.v0 + a0 * self.seconds * a0 / (a0 - a1) / 2))
+        if self.a0 * self.a1 < 0:
+            top = max(
+                top, abs(self.v0 + self.a0 * self.seconds * self.a0 / (self.a0 - self.a1) / 2)
+            )
         return top
 
-    @property
-    def span(self) -> tuple[float, float]:
-        """The lowest and highest position on the way."""
-        points = [self.p0, self.p1]
-        points += [self.position(t) for t in self._turning_points()]
-        return min(points), max(points)
+    def position(self, t: float) -> float:
+        a0 = self.a0
+        return self.p0 + t * (self.v0 + t * (a0 / 2 + t * (self.a1 - a0) / (6 * self.seconds)))
+
+    def stays_within(self, low: float, high: float) -> bool:
+        third = self.seconds / 3
+        hull = (self.p0, self.p0 + self.v0 * third, self.p1 - self.v1 * third, self.p1)
+        if low <= min(hull) and max(hull) <= high:
+            return True
+        points = [self.p0, self.p1, *map(self.position, self._turning_points())]
+        return low <= min(points) and max(points) <= high
 
     def _turning_points(self) -> list[float]:
-        a0, a1 = self.accelerations
-        curve = (a1 - a0) / (2 * self.seconds)
-        inside = a0 * a0 - 4 * curve * self.v0
+        a0, v0 = self.a0, self.v0
+        curve = (self.a1 - a0) / (2 * self.seconds)
+        inside = a0 * a0 - 4 * curve * v0
         if inside < 0:
             return []
         # The two roots without cancellation; either divisor may vanish.
         q = -(a0 + (sqrt(inside) if a0 >= 0 else -sqrt(inside))) / 2
-        roots = ([q / curve] if curve else []) + ([self.v0 / q] if q else [])
+        roots = ([q / curve] if curve else []) + ([v0 / q] if q else [])
         return [root for root in roots if 0 < root < self.seconds]
 
 
@@ -121,7 +122,7 @@ class Checks:
         top = self._velocity if homed else self._unhomed
         grace = 1 + RELATIVE_SLACK
         for joint, cubic in enumerate(cubics):
-            if max(map(abs, cubic.accelerations)) > self._acceleration[joint] * grace + a_slack:
+            if cubic.top_acceleration > self._acceleration[joint] * grace + a_slack:
                 return Objection(Refusal.ACCELERATION, joint)
             if cubic.top_speed > top[joint] * grace + v_slack:
                 return Objection(Refusal.VELOCITY if homed else Refusal.UNHOMED_SPEED, joint)
@@ -138,8 +139,7 @@ class Checks:
         for joint, cubic in enumerate(cubics):
             low = min(self._low[joint], cubic.p0)
             high = max(self._high[joint], cubic.p0)
-            span = cubic.span
-            if span[0] < low or span[1] > high:
+            if not cubic.stays_within(low, high):
                 return Objection(Refusal.JOINT_LIMIT, joint)
             if not low <= brake[joint] <= high:
                 return Objection(Refusal.BRAKE, joint)

@@ -19,6 +19,7 @@ class Drive:
         self._path: Path | None = None
         self._piece_end = 0  # in ticks of the path
         self.plant = plant
+        self.switches = plant.switches  # as last looked at
 
     @property
     def moving(self) -> bool:
@@ -32,11 +33,6 @@ class Drive:
     @property
     def counts(self) -> tuple[int, ...]:
         return self._stepper.counts
-
-    @property
-    def remaining(self) -> int:
-        """Ticks to the end of the present piece."""
-        return self._stepper.remaining
 
     def place(self, positions: Sequence[int]) -> None:
         """At rest: says what the position is. The arms do not move."""
@@ -70,17 +66,28 @@ class Drive:
         self._stepper.place(self._stepper.positions)
         self.plant.step(self._stepper.counts)
 
-    def advance(self, ticks: int) -> bool:
-        """At most `remaining`; true when a piece has ended. `moving` tells if the path has."""
-        self._stepper.advance(ticks)
-        if self._stepper.remaining or self._path is None:
-            return False
-        self.plant.step(self._stepper.counts)
-        if self._piece_end < self._path.ticks:
-            self._load(self._path)
-        else:
-            self._path = None
-        return True
+    def advance(self, ticks: int) -> int:
+        """Follows the path for `ticks`, or until it ends or a switch changes; the ticks passed.
+
+        The switches are looked at wherever a piece ends.
+        """
+        stepper, passed = self._stepper, 0
+        while self._path is not None and passed < ticks:
+            step = min(ticks - passed, stepper.remaining)
+            stepper.advance(step)
+            passed += step
+            if stepper.remaining:
+                break
+            self.plant.step(stepper.counts)
+            if self._piece_end < self._path.ticks:
+                self._load(self._path)
+            else:
+                self._path = None
+            switches = self.plant.switches
+            if switches != self.switches:
+                self.switches = switches
+                break
+        return passed
 
     def _load(self, path: Path) -> None:
         ticks = piece_ticks(path.ticks - self._piece_end, self._ticks_per_ms)

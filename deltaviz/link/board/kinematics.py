@@ -10,7 +10,6 @@ P = D1 + w - n √((l1² - |w|²) / n²), the working assembly.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from math import cos, sin, sqrt
 from typing import Protocol
 
@@ -27,81 +26,59 @@ class ForwardKinematics(Protocol):
         ...
 
 
-@dataclass(frozen=True, slots=True)
-class _Arm:
-    offset: float  # s = R - r
-    upper: float
-    forearm: float
-    cos_azimuth: float
-    sin_azimuth: float
-
-
 class RotaryDeltaForward:
     def __init__(self, geometry: Mapping[str, Sequence[float]], tool_offset: Sequence[float]):
         """`geometry` has the names of GEOMETRY with three numbers each (mm, azimuths in rad)."""
+        base, effector, upper, forearm, azimuths = (geometry[name] for name in GEOMETRY)
         self._tool = tuple(tool_offset)
         self._arms = tuple(
-            _Arm(base - effector, upper, forearm, cos(azimuth), sin(azimuth))
-            for base, effector, upper, forearm, azimuth in zip(
-                *(geometry[name] for name in GEOMETRY), strict=True
-            )
+            (base[i] - effector[i], upper[i], cos(azimuths[i]), sin(azimuths[i])) for i in range(3)
         )
+        self._forearms = tuple(forearm)
 
     def tip(self, theta: Sequence[float]) -> Vector | None:
-        elbows = [
-            _elbow(arm, cos(angle), sin(angle))
-            for arm, angle in zip(self._arms, theta, strict=True)
-        ]
-        centre = _meet(elbows, [arm.forearm for arm in self._arms])
+        angles = [(cos(angle), sin(angle)) for angle in theta]
+        elbows: list[Vector] = []
+        for (offset, upper, cos_azimuth, sin_azimuth), (cos_angle, sin_angle) in zip(
+            self._arms, angles, strict=True
+        ):
+            out = offset + upper * cos_angle
+            elbows.append((out * cos_azimuth, out * sin_azimuth, -upper * sin_angle))
+        centre = _meet(elbows[0], elbows[1], elbows[2], *self._forearms)
         if centre is None:
             return None
-        for arm, elbow, angle in zip(self._arms, elbows, theta, strict=True):
-            outward = (centre[0] - elbow[0]) * arm.cos_azimuth + (
-                centre[1] - elbow[1]
-            ) * arm.sin_azimuth
-            if -outward * sin(angle) - (centre[2] - elbow[2]) * cos(angle) <= 0.0:
+        x, y, z = centre
+        for (_, _, cos_azimuth, sin_azimuth), (cos_angle, sin_angle), elbow in zip(
+            self._arms, angles, elbows, strict=True
+        ):
+            outward = (x - elbow[0]) * cos_azimuth + (y - elbow[1]) * sin_azimuth
+            if outward * sin_angle + (z - elbow[2]) * cos_angle >= 0.0:
                 return None
         tool = self._tool
-        return (centre[0] + tool[0], centre[1] + tool[1], centre[2] + tool[2])
+        return (x + tool[0], y + tool[1], z + tool[2])
 
 
-def _elbow(arm: _Arm, cos_angle: float, sin_angle: float) -> Vector:
-    out = arm.offset + arm.upper * cos_angle
-    return (out * arm.cos_azimuth, out * arm.sin_azimuth, -arm.upper * sin_angle)
+def _meet(
+    first: Vector, second: Vector, third: Vector, l1: float, l2: float, l3: float
+) -> Vector | None:
+    """Where three spheres meet, on the side of the working assembly.
 
-
-def _meet(elbows: Sequence[Vector], radii: Sequence[float]) -> Vector | None:
-    first, second, third = elbows
-    l1, l2, l3 = radii
-    a = (second[0] - first[0], second[1] - first[1], second[2] - first[2])
-    b = (third[0] - first[0], third[1] - first[1], third[2] - first[2])
-    n = _cross(a, b)
-    n2 = _dot(n, n)
+    Written out in scalars: it runs four times for each segment.
+    """
+    x1, y1, z1 = first
+    ax, ay, az = second[0] - x1, second[1] - y1, second[2] - z1
+    bx, by, bz = third[0] - x1, third[1] - y1, third[2] - z1
+    nx, ny, nz = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+    n2 = nx * nx + ny * ny + nz * nz
     if n2 < 1e-9:
         return None
-    alpha = (_dot(a, a) + l1 * l1 - l2 * l2) / 2
-    beta = (_dot(b, b) + l1 * l1 - l3 * l3) / 2
-    bn = _cross(b, n)
-    na = _cross(n, a)
-    w = (
-        (alpha * bn[0] + beta * na[0]) / n2,
-        (alpha * bn[1] + beta * na[1]) / n2,
-        (alpha * bn[2] + beta * na[2]) / n2,
-    )
-    height2 = l1 * l1 - _dot(w, w)
+    alpha = (ax * ax + ay * ay + az * az + l1 * l1 - l2 * l2) / (2 * n2)
+    beta = (bx * bx + by * by + bz * bz + l1 * l1 - l3 * l3) / (2 * n2)
+    wx = alpha * (by * nz - bz * ny) + beta * (ny * az - nz * ay)
+    wy = alpha * (bz * nx - bx * nz) + beta * (nz * ax - nx * az)
+    wz = alpha * (bx * ny - by * nx) + beta * (nx * ay - ny * ax)
+    height2 = l1 * l1 - (wx * wx + wy * wy + wz * wz)
     if height2 < 0.0:
         return None
     k = sqrt(height2 / n2)
-    return (
-        first[0] + w[0] - n[0] * k,
-        first[1] + w[1] - n[1] * k,
-        first[2] + w[2] - n[2] * k,
-    )
-
-
-def _dot(a: Vector, b: Vector) -> float:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-def _cross(a: Vector, b: Vector) -> Vector:
-    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+    return (x1 + wx - nx * k, y1 + wy - ny * k, z1 + wz - nz * k)

@@ -51,9 +51,8 @@ class Plant:
 
     @property
     def switches(self) -> list[bool]:
-        direction = self._direction
         pressed = [
-            (arm - switch) * direction >= 0
+            (arm - switch) * self._direction >= 0
             for arm, switch in zip(self._arms, self._switch, strict=True)
         ]
         for joint, reads in self.forced_switches.items():
@@ -62,12 +61,14 @@ class Plant:
 
     def step(self, counts: Sequence[int]) -> None:
         """The counter went to `counts`; an arm at its mechanical end stays, its steps are lost."""
-        self._arms = [
-            min(max(arm + count - last, low), high)
-            for arm, count, last, low, high in zip(
-                self._arms, counts, self._counts, self._low, self._high, strict=True
-            )
-        ]
+        arms, before, low, high = self._arms, self._counts, self._low, self._high
+        for joint, count in enumerate(counts):
+            arm = arms[joint] + count - before[joint]
+            if arm < low[joint]:
+                arm = low[joint]
+            elif arm > high[joint]:
+                arm = high[joint]
+            arms[joint] = arm
         self._counts = counts
 
     def rebase(self, counts: Sequence[int]) -> None:

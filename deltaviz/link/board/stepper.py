@@ -32,21 +32,20 @@ class Stepper:
 
     @property
     def counts(self) -> tuple[int, ...]:
-        return tuple([position >> 32 for position in self.positions])
+        positions = self._to if self._elapsed == self._ticks else self.positions
+        return tuple([position >> 32 for position in positions])
 
     def place(self, positions: Sequence[int]) -> None:
         """Says where it is, without a step."""
         self._to = list(positions)
         self._ticks = self._elapsed = 0
 
-    def load(self, targets: Sequence[int], ticks: int) -> None:
+    def load(self, targets: list[int], ticks: int) -> None:
         """Heads for `targets`, to be there in `ticks`, from the position of this tick."""
-        self._from = self.positions
-        self._to = list(targets)
-        self._increments = [
-            (target - position) // ticks
-            for target, position in zip(targets, self._from, strict=True)
-        ]
+        start = self._to if self._elapsed == self._ticks else self.positions
+        self._from = start
+        self._to = targets
+        self._increments = [(t - p) // ticks for t, p in zip(targets, start, strict=True)]
         self._ticks = ticks
         self._elapsed = 0
 

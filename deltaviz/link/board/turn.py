@@ -22,10 +22,10 @@ def arm_refusal(
     now: int,
     last_epoch: int,
     counts: Sequence[int],
-    moving: bool,
+    idle: bool,
     ticks_per_ms: int,
 ) -> Refusal | None:
-    if moving:
+    if not idle:
         return Refusal.MOVING
     if not 0 <= arm.epoch <= 0xFFFF or since16(arm.epoch, last_epoch) <= 0:
         return Refusal.EPOCH
@@ -61,14 +61,14 @@ def well_formed(segment: Segment, *, joints: int) -> bool:
 
 
 def well_timed(
-    segment: Segment, *, now: int | None, queue: SegmentQueue, ticks_per_ms: int
+    segment: Segment, *, idle_at: int | None, queue: SegmentQueue, ticks_per_ms: int
 ) -> bool:
-    """`now` is the present tick when nothing runs and nothing waits, else None."""
+    """`idle_at` is the present tick when nothing runs and nothing waits, else None."""
     if not SEGMENT_MIN_MS * ticks_per_ms <= segment.duration <= SEGMENT_MAX_MS * ticks_per_ms:
         return False
     start = segment.t_end - segment.duration
-    if now is not None:
-        return _near(start, now, ticks_per_ms)
+    if idle_at is not None:
+        return _near(start, idle_at, ticks_per_ms)
     if any(queue.v):
         return since(start, queue.nominal_end) == 0
     return (
