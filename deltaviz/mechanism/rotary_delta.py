@@ -19,7 +19,7 @@ from deltaviz.mechanism.kernel import Kernel
 from deltaviz.mechanism.margin import Margin, MarginKind
 from deltaviz.mechanism.stiffness import TYPE_1_RESERVE, TYPE_2_RESERVE, stiffness, unit
 
-MEET_ROUNDING = 16 * EPS  # of the squared height of P over the elbows, in squared forearms
+MEET_ROUNDING = 16 * EPS  # of P's squared height over three elbows at right angles, in l²
 UNDETERMINED = 1e-12  # elbow centres whose triangle is smaller than this, in squared forearms
 LEAST_SEPARATION = math.radians(1.0)  # of two arms' azimuths
 
@@ -125,6 +125,7 @@ class RotaryDelta:
         """As `inverse`, but an arm that cannot reach gets the angle that comes nearest."""
         return self._angles(rows(xyz, 3, "xyz"), clamp=True)
 
+    @np.errstate(all="ignore")
     def forward(self, theta: ArrayLike) -> Array:
         """Effector positions of joint angles, (..., 3) rad to (..., 3) mm.
 
@@ -132,31 +133,29 @@ class RotaryDelta:
         solutions the working one (det Jx < 0 with arms counter-clockwise: below the elbows).
         A row is NaN where the forearms cannot meet, or would meet in more than two points.
         """
-        angles = rows(theta, 3, "theta")
-        with np.errstate(all="ignore"):
-            return self._meet(self.elbows(angles))
+        return self._meet(self.elbows(theta))
 
+    @np.errstate(all="ignore")
     def jacobian(self, theta: ArrayLike) -> Array:
         """d xyz / d theta, (..., 3) rad to (..., 3, 3) mm/rad; NaN where `forward` is, and at
         type 2 singularities."""
         angles = rows(theta, 3, "theta")
-        with np.errstate(all="ignore"):
-            elbows = self.elbows(angles)
-            forearms = self._meet(elbows)[..., None, :] - elbows
-            jq = self._jq(forearms, angles)
-            adjugate = _cross_rows(forearms)
-            det = (forearms[..., 0, :] * adjugate[..., 0, :]).sum(axis=-1)
-            det = np.where(det == 0.0, np.nan, det)
-            return np.swapaxes(adjugate * (jq / det[..., None])[..., None], -1, -2)
+        elbows = self.elbows(angles)
+        forearms = self._meet(elbows)[..., None, :] - elbows
+        jq = self._jq(forearms, angles)
+        adjugate = _cross_rows(forearms)
+        det = (forearms[..., 0, :] * adjugate[..., 0, :]).sum(axis=-1)
+        det = np.where(det == 0.0, np.nan, det)
+        return np.swapaxes(adjugate * (jq / det[..., None])[..., None], -1, -2)
 
+    @np.errstate(all="ignore")
     def elbows(self, theta: ArrayLike) -> Array:
         """Elbow centres moved inward by the effector's radius, (..., 3) rad to (..., 3, 3) mm."""
         angles = rows(theta, 3, "theta")
         out = np.empty((*angles.shape, 3))
         for i, arm in enumerate(self.arms):
-            with np.errstate(invalid="ignore"):
-                radius = arm.offset + arm.upper_arm * np.cos(angles[..., i])
-                out[..., i, 2] = -arm.upper_arm * np.sin(angles[..., i])
+            radius = arm.offset + arm.upper_arm * np.cos(angles[..., i])
+            out[..., i, 2] = -arm.upper_arm * np.sin(angles[..., i])
             out[..., i, 0] = radius * arm.cos
             out[..., i, 1] = radius * arm.sin
         return out
@@ -185,6 +184,7 @@ class RotaryDelta:
         planes = [arm.plane(points[..., 0], points[..., 1])[1] for arm in self.arms]
         return np.stack(planes, axis=-1)
 
+    @np.errstate(all="ignore")
     def misses(self, xyz: ArrayLike) -> tuple[Array, Array]:
         """(too far, too near), each (..., 3) mm: how far each arm is from reaching; negative
         where it reaches."""
@@ -196,6 +196,7 @@ class RotaryDelta:
             np.stack([near for _, near in each], axis=-1),
         )
 
+    @np.errstate(all="ignore")
     def margins(self, xyz: ArrayLike, theta: ArrayLike) -> Array:
         """(..., 5) as `margin_names`; NaN angles are replaced by those nearest to reaching.
 
@@ -241,12 +242,12 @@ class RotaryDelta:
         """mm per unit of stiffness where the forearms lie flat: l/√3."""
         return sum(self.forearm) / 3 / math.sqrt(3)
 
+    @np.errstate(all="ignore")
     def _angles(self, points: Array, *, clamp: bool) -> Array:
         x, y, z = points[..., 0], points[..., 1], points[..., 2]
         theta = np.empty(points.shape)
-        with np.errstate(all="ignore"):
-            for i, arm in enumerate(self.arms):
-                theta[..., i] = arm.angle(x, y, z, clamp=clamp)
+        for i, arm in enumerate(self.arms):
+            theta[..., i] = arm.angle(x, y, z, clamp=clamp)
         return theta
 
     def _meet(self, elbows: Array) -> Array:
@@ -260,7 +261,8 @@ class RotaryDelta:
         along_b = (_dot(b, b) + (l1 - l3)) / 2
         w = (along_a * np.cross(b, n) + along_b * np.cross(n, a)) / square
         height = l1 - _dot(w, w)
-        height = np.where((height < 0) & (height >= -MEET_ROUNDING * l1), 0.0, height)
+        edge = MEET_ROUNDING * l1 * _dot(a, a) * _dot(b, b) / square
+        height = np.where((height < 0) & (height >= -edge), 0.0, height)
         height = np.where(square > (UNDETERMINED * l1) ** 2, height, np.nan)
         return first + w - n * (self.handedness * np.sqrt(height / square))
 

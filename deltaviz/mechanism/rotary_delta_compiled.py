@@ -120,7 +120,8 @@ def _meet(t0: float, t1: float, t2: float, g: Array) -> Vector:
     )
     height = l1 - (wx * wx + wy * wy + wz * wz)
     if height < 0.0:
-        if height < -g[4, MEET] * l1:
+        size = (ax * ax + ay * ay + az * az) * (bx * bx + by * by + bz * bz)
+        if height < -g[4, MEET] * l1 * size / square:
             return math.nan, math.nan, math.nan
         height = 0.0
     h = g[3, 3] * math.sqrt(height / square)
