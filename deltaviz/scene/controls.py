@@ -9,7 +9,7 @@ from enum import Enum, auto
 
 from viser import GuiCheckboxHandle, GuiDropdownHandle, GuiSliderHandle
 
-from deltaviz.scene.per_client import uuid_of
+from deltaviz.scene.inner import uuid_of
 
 _RETIRED_KEPT = 256
 

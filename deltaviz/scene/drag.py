@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from viser import CameraHandle, SceneNodeDragEvent
+from viser._messages import DragButton, KeyModifier
 
 from deltaviz.machine.intent import Answer, DragEnd, DragStart, DragTo, Refused
 from deltaviz.machine.port import MachinePort
@@ -22,7 +23,7 @@ from deltaviz.scene.listener import SESSION
 from deltaviz.scene.pointer import Eye, Grip
 from deltaviz.scene.units import metres, millimetres
 
-BINDINGS: list[tuple[str, str | None]] = [("left", None), ("left", "shift")]
+BINDINGS: tuple[tuple[DragButton, KeyModifier | None], ...] = (("left", None), ("left", "shift"))
 _SAME_GESTURE = 0.4  # s between the end of one segment and the next, when Shift changes
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
 import viser
 
 from deltaviz.robots import Robot
@@ -13,7 +12,7 @@ from deltaviz.scene.delta_rig import DeltaDimensions, DeltaRig
 from deltaviz.scene.shapes import Shape
 
 _SIDEWAYS = rotations.about(0, -math.pi / 2)  # turns +z to +y
-_SAME = 2e-4  # rad and, in the scene, mm: a target this near is where the robot is
+_SAME = 0.02  # mm and, far below a mm, rad: a target this near is where the robot is
 _UNKNOWN_OPACITY = 0.25
 _GHOST_OPACITY = 0.28
 
@@ -31,6 +30,7 @@ class RotaryDeltaModel:
         self._rig = DeltaRig(scene, "/robot", self._size)
         self._solid: list[viser.MeshHandle] = []
         self._joints: list[tuple[viser.MeshHandle, ...]] = []
+        self._tints = [colours.STEEL] * len(self._size.azimuth)
         self._add_base()
         for i in range(len(self._size.azimuth)):
             self._add_arm(i)
@@ -53,10 +53,12 @@ class RotaryDeltaModel:
         self._ghost.root.visible = True
 
     def show_margins(self, margins: tuple[float, ...]) -> None:
-        for parts, margin in zip(self._joints, margins, strict=False):
-            colour = colours.tint(colours.STEEL, margin)
-            for part in parts:
-                part.color = colour
+        tints = [colours.tint(colours.STEEL, margin) for margin in margins]
+        for i, (parts, colour) in enumerate(zip(self._joints, tints, strict=False)):
+            if colour != self._tints[i]:
+                self._tints[i] = colour
+                for part in parts:
+                    part.color = colour
 
     def show_known(self, known: bool) -> None:
         if known != self._known:
@@ -71,8 +73,8 @@ class RotaryDeltaModel:
     def _is_here(self, theta: tuple[float, ...], xyz: tuple[float, ...]) -> bool:
         if self._pose is None:
             return False
-        shown, wanted = (np.concatenate(pair) for pair in (self._pose, (theta, xyz)))
-        return bool(np.abs(shown - wanted).max() < _SAME)
+        shown, wanted = (*self._pose[0], *self._pose[1]), (*theta, *xyz)
+        return all(abs(a - b) < _SAME for a, b in zip(shown, wanted, strict=True))
 
     def _add(self, name: str, shape: Shape, colour: colours.Colour) -> viser.MeshHandle:
         part = self._scene.add_mesh_simple(

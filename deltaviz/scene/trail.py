@@ -22,13 +22,17 @@ class TrailPoints:
         self._points: deque[tuple[float, Array]] = deque(maxlen=SEGMENTS)
         self._tip: Array | None = None
 
-    def pass_through(self, xyz: tuple[float, ...], now: float) -> None:
-        """The tool tip is at xyz (mm) at the time `now` (s)."""
-        self._tip = np.asarray(xyz, dtype=np.float64)
-        if not self._points or np.linalg.norm(self._points[0][1] - self._tip) >= _SPACING:
-            self._points.appendleft((now, self._tip))
-        while self._points and now - self._points[-1][0] > _LIFE:
+    def pass_through(self, xyz: tuple[float, ...], now: float) -> bool:
+        """The tool tip is at xyz (mm) at the time `now` (s); whether the trail changed."""
+        tip = np.asarray(xyz, dtype=np.float64)
+        changed = self._tip is None or not np.array_equal(tip, self._tip)
+        self._tip = tip
+        if not self._points or np.linalg.norm(self._points[0][1] - tip) >= _SPACING:
+            self._points.appendleft((now, tip))
+        while len(self._points) > 1 and now - self._points[-1][0] > _LIFE:
             self._points.pop()
+            changed = True
+        return changed
 
     def clear(self) -> None:
         self._points.clear()
@@ -75,8 +79,8 @@ class Trail:
         self._draw()
 
     def pass_through(self, xyz: tuple[float, ...], now: float) -> None:
-        self._points.pass_through(xyz, now)
-        self._draw()
+        if self._points.pass_through(xyz, now):
+            self._draw()
 
     def _draw(self) -> None:
         newer, older = np.moveaxis(metres(self._points.segments()), 1, 0)

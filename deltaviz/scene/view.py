@@ -36,7 +36,7 @@ _log = logging.getLogger(__name__)
 
 RATE = 60.0  # Hz
 _PANEL_EVERY = 5  # frames
-_TRAIL_EVERY = 2
+_TRAIL_EVERY = 3
 _NOTE_LIFE = 6.0  # s
 
 

@@ -11,7 +11,7 @@ import numpy as np
 import viser
 from viser import ClientHandle, GuiCheckboxHandle, GuiEvent
 
-from deltaviz.scene import colours, per_client
+from deltaviz.scene import colours, inner
 from deltaviz.scene.controls import Controls
 from deltaviz.scene.drag import BINDINGS, Dragging
 from deltaviz.scene.panel import Panel
@@ -138,8 +138,8 @@ class Viewer:
     def _apply_steering(self, model: RobotModel) -> None:
         may_steer = bool(self._may_steer)
         for handle in self._panel.steering:
-            per_client.set_enabled(self.client, handle, may_steer)
-        per_client.set_draggable(self.client, model.effector, BINDINGS if may_steer else [])
+            inner.set_enabled(self.client, handle, may_steer)
+        inner.set_draggable(self.client, model.effector, BINDINGS if may_steer else ())
         if self._handle is not None:
             self._handle.visible = may_steer
 
@@ -165,7 +165,7 @@ class Viewer:
     def _apply(self, choice: str) -> None:
         wanted = getattr(self._display, choice)
         if choice in _LAYERS:
-            per_client.set_visible(self.client, _LAYERS[choice], wanted)
+            inner.set_visible(self.client, _LAYERS[choice], wanted)
         elif choice == "shadows":
             self.client.scene.configure_default_lights(cast_shadow=wanted)
         else:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import dataclasses
 import socket
@@ -35,6 +36,7 @@ from deltaviz.machine.mode import Mode
 from deltaviz.machine.snapshot import LinkStatus, Snapshot
 from deltaviz.mechanism import RotaryDelta
 from deltaviz.robots import Robot, load_robot
+from deltaviz.scene.listener import open_listener
 from deltaviz.scene.view import Scene
 
 CHROMIUM = "/usr/bin/chromium"
@@ -144,6 +146,15 @@ class Stand:
     @property
     def server(self) -> viser.ViserServer:
         return self.scene._listener.server
+
+    def draw(self, poses: Iterator[None]) -> None:
+        """Draw a frame at each step of `poses`, in the thread that draws."""
+
+        async def frames() -> None:
+            for _ in poses:
+                self.scene._frame()
+
+        asyncio.run_coroutine_threadsafe(frames(), self.server.get_event_loop()).result(60.0)
 
     def eventually(self, holds: Callable[[], Any], within: float = 20.0) -> Any:
         return eventually(holds, within)
@@ -316,17 +327,42 @@ def own_stand(robot: Robot) -> Iterator[Stand]:
         yield stand
 
 
+@contextlib.contextmanager
+def visiting(stand: Stand) -> Iterator[Callable[[str | None], Visitor]]:
+    with contextlib.ExitStack() as visitors:
+
+        def arrive(session: str | None) -> Visitor:
+            visitor = Visitor(stand.port, session)
+            visitors.callback(visitor.socket.close)
+            return visitor
+
+        yield arrive
+
+
 @pytest.fixture
 def visit(stand: Stand) -> Iterator[Callable[[str | None], Visitor]]:
-    visitors: list[Visitor] = []
+    with visiting(stand) as arrive:
+        yield arrive
 
-    def arrive(session: str | None) -> Visitor:
-        visitors.append(Visitor(stand.port, session))
-        return visitors[-1]
 
-    yield arrive
-    for visitor in visitors:
-        visitor.socket.close()
+@pytest.fixture
+def visit_own(own_stand: Stand) -> Iterator[Callable[[str | None], Visitor]]:
+    with visiting(own_stand) as arrive:
+        yield arrive
+
+
+@pytest.fixture(scope="module")
+def scene_api() -> Iterator[viser.SceneApi]:
+    """viser's nodes, without anything of ours."""
+    listener = open_listener()
+    yield listener.server.scene
+    listener.close()
+
+
+@pytest.fixture
+def stand_in(robot: Robot) -> FakeMachine:
+    """A machine without a scene."""
+    return FakeMachine(robot)
 
 
 @pytest.fixture(scope="session")

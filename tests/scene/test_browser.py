@@ -1,0 +1,189 @@
+"""viser's page in a real browser, through our gateway."""
+
+from __future__ import annotations
+
+import json
+import threading
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+from playwright.sync_api import Browser, BrowserContext, Page
+from websockets.sync.server import serve
+
+from deltaviz.machine.intent import DragEnd, DragStart, DragTo, FollowAngles
+from deltaviz.scene.drag import eye_of
+
+pytestmark = [pytest.mark.browser, pytest.mark.xdist_group("scene-browser")]
+
+PANEL = 288
+
+
+@pytest.fixture
+def context(chromium: Browser, stand: Any) -> Iterator[BrowserContext]:
+    context = chromium.new_context(viewport={"width": 936, "height": 752})
+    context.add_cookies([{"name": "session", "value": "anna", "url": stand.url}])
+    yield context
+    context.close()
+
+
+@pytest.fixture
+def page(context: BrowserContext, stand: Any) -> Page:
+    """The scene, open, with its sliders and its camera at rest."""
+    page = context.new_page()
+    page.goto(stand.url)
+    page.get_by_text("Angles").wait_for()
+    stand.eventually(lambda: stand.server.get_clients())
+    page.wait_for_function(
+        "() => [...document.querySelectorAll('canvas')].some(c => c.clientWidth < 700)"
+    )
+    at_rest(page, stand)
+    return page
+
+
+def the_client(stand: Any) -> Any:
+    (client,) = stand.server.get_clients().values()
+    return client
+
+
+def at_rest(page: Page, stand: Any) -> None:
+    """Wait until the camera that the server knows is that of the picture."""
+
+    def fits() -> bool:
+        page.wait_for_timeout(50)
+        canvas = picture(page)
+        camera = the_client(stand).camera
+        return abs(camera.aspect - canvas["width"] / canvas["height"]) < 0.01
+
+    stand.eventually(fits)
+
+
+def picture(page: Page) -> dict[str, float]:
+    """The canvas that shows the robot."""
+    return page.evaluate(
+        """() => {
+            const all = [...document.querySelectorAll('canvas')].map(c => c.getBoundingClientRect());
+            const r = all.sort((a, b) => b.width * b.height - a.width * a.height)[0];
+            return {x: r.x, y: r.y, width: r.width, height: r.height};
+        }"""
+    )
+
+
+def on_screen(page: Page, stand: Any, mm: tuple[float, ...]) -> tuple[float, float]:
+    u, v = eye_of(the_client(stand).camera).project(np.asarray(mm) / 1000.0)
+    canvas = picture(page)
+    return canvas["x"] + u * canvas["width"], canvas["y"] + v * canvas["height"]
+
+
+@pytest.mark.parametrize("shift", [False, True])
+def test_what_was_grabbed_stays_under_the_pointer(page: Page, stand: Any, shift: bool) -> None:
+    """Judged by the browser's own projection of the grabbed place, which viser sends along."""
+    seen: list[Any] = []
+
+    async def record(event: Any) -> None:
+        seen.append(event)
+
+    handle = the_client(stand).scene.get_handle_by_name("/robot/effector/handle")
+    for target in (stand.scene._model.effector, handle):
+        target.on_drag("left", modifier="shift" if shift else None)(record)
+    x, y = on_screen(page, stand, stand.machine.snapshot.xyz)
+    dx, dy = (0.0, -40.0) if shift else (70.0, 25.0)
+    if shift:
+        page.keyboard.down("Shift")
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + dx, y + dy, steps=12)
+    stand.eventually(lambda: stand.machine.of(DragTo))
+    page.wait_for_timeout(400)  # the picture follows the robot, which is at its target
+    page.mouse.move(x + dx + 1, y + dy)
+    page.wait_for_timeout(200)
+    page.mouse.up()
+    if shift:
+        page.keyboard.up("Shift")
+    stand.eventually(lambda: stand.machine.of(DragEnd))
+    size = np.array((picture(page)["width"], picture(page)["height"]))
+    end = next(event for event in reversed(seen) if event.phase == "end")
+    miss = (np.array(end.start_screen_pos) - np.array(end.end_screen_pos)) * size
+    assert np.abs(miss).max() <= 3.0
+    start, last = stand.machine.of(DragStart), stand.machine.of(DragTo)[-1]
+    assert [intent.client for intent in start] == ["anna"]
+    moved = np.subtract(last.xyz, (0.0, 0.0, sum(stand.machine.robot.workspace.z) / 2))
+    assert abs(moved[2]) < 1e-6 if not shift else np.abs(moved[:2]).max() < 1e-6
+    assert np.linalg.norm(moved) > 20.0
+
+
+def test_a_slider_posts_angles_and_the_others_follow(page: Page, stand: Any) -> None:
+    slider = page.get_by_role("slider").nth(0)
+    slider.focus()
+    for _ in range(5):
+        page.keyboard.press("ArrowRight")
+        page.wait_for_timeout(80)
+    intent = stand.eventually(lambda: stand.machine.of(FollowAngles))[-1]
+    assert intent.client == "anna"
+    z_before = sum(stand.machine.robot.workspace.z) / 2
+    box = page.get_by_role("textbox")
+    stand.eventually(
+        lambda: (page.wait_for_timeout(50), float(box.nth(5).input_value()) != z_before)[1]
+    )
+    assert float(box.nth(5).input_value()) == pytest.approx(stand.machine.snapshot.xyz[2], abs=0.2)
+
+
+def test_escape_from_a_lost_pointer_ends_the_drag(page: Page, stand: Any) -> None:
+    x, y = on_screen(page, stand, stand.machine.snapshot.xyz)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 40, y, steps=6)
+    stand.eventually(lambda: stand.machine.of(DragTo))
+    page.close()
+    stand.eventually(lambda: stand.machine.of(DragEnd))
+
+
+@pytest.mark.parametrize(
+    "attack", ["?websocket=ws://127.0.0.1:{port}", "?playbackPath=/evil.viser"]
+)
+def test_a_source_in_the_address_runs_nothing(
+    context: BrowserContext, stand: Any, attack: str
+) -> None:
+    """Both ran a message's script in our origin before the page was guarded."""
+    asked: list[str] = []
+
+    def elsewhere(connection: Any) -> None:
+        asked.append("websocket")
+        connection.close()
+
+    with serve(elsewhere, "127.0.0.1", 0, subprotocols=["viser-v1.1.1"]) as server:  # type: ignore[list-item]
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        port = server.socket.getsockname()[1]
+        page = context.new_page()
+        page.on("request", lambda request: asked.append(request.url))
+        page.goto(stand.url + attack.format(port=port))
+        page.get_by_text("Angles").wait_for()
+        assert "websocket=" not in page.evaluate("location.href").replace(f":{stand.port}", "")
+    assert "websocket" not in asked
+    assert not [url for url in asked if "evil" in url and "?" not in url]
+
+
+def test_even_viser_itself_cannot_run_a_script_in_our_page(page: Page, stand: Any) -> None:
+    import viser._messages as messages
+
+    the_client(stand)._websock_connection.queue_message(
+        messages.RunJavascriptMessage("globalThis.owned = 1")
+    )
+    stand.machine.be_at((5.0, 0.0, -330.0))
+    page.wait_for_timeout(500)
+    assert page.evaluate("typeof globalThis.owned") == "undefined"
+    # nor can markup that gets into the panel
+    the_client(stand).gui.add_html("<img src=x onerror='globalThis.owned=1'>")
+    page.wait_for_timeout(500)
+    assert page.evaluate("typeof globalThis.owned") == "undefined"
+
+
+def test_nothing_is_loaded_from_elsewhere(context: BrowserContext, stand: Any) -> None:
+    page = context.new_page()
+    urls: list[str] = []
+    page.on("request", lambda request: urls.append(request.url))
+    page.goto(stand.url)
+    page.get_by_text("Angles").wait_for()
+    strange = [u for u in urls if not u.startswith((stand.url, "data:", "blob:"))]
+    assert json.dumps(strange) == "[]"

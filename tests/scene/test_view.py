@@ -1,0 +1,233 @@
+"""The scene as browsers get it: nodes, rates, switches of robot."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+
+from deltaviz.machine.intent import FollowPoint
+from deltaviz.robots import Robot
+from deltaviz.scene import colours, framing
+from deltaviz.scene.trail import SEGMENTS, TrailPoints
+
+Visit = Callable[[str | None], Any]
+
+
+def nodes(stand: Any) -> set[str]:
+    return set(stand.server.scene._handle_from_node_name)
+
+
+def buffered(stand: Any) -> int:
+    """Messages that a browser would be sent on arrival."""
+    return len(stand.server._websock_server._broadcast_buffer.message_from_id)
+
+
+def drawn_tip(stand: Any) -> np.ndarray:
+    return stand.server.scene.get_handle_by_name("/robot/effector").position * 1000.0
+
+
+def test_a_thousand_poses_add_no_node_and_no_message(stand: Any) -> None:
+    before = nodes(stand)
+    counts: list[int] = []
+
+    def poses() -> Iterator[None]:
+        for i in range(1000):
+            angle = i / 50
+            xyz = (60 * math.cos(angle), 60 * math.sin(angle), -330.0)
+            target = (-xyz[0], xyz[1], -320.0)
+            theta = tuple(stand.machine.robot.inverse(target).tolist())
+            stand.machine.be_at(xyz, target_xyz=target, target_theta=theta, margins=(1.0, 0.1, 0.0))
+            counts.append(buffered(stand))
+            yield
+
+    stand.draw(poses())
+    assert nodes(stand) == before
+    assert max(counts[500:]) == max(counts[50:500])  # nothing piles up
+
+
+def test_the_robot_is_shown_where_it_was_reported_not_where_it_was_sent(stand: Any) -> None:
+    stand.machine.be_at((10.0, -20.0, -340.0), target_xyz=(80.0, 0.0, -330.0))
+    stand.eventually(lambda: np.allclose(drawn_tip(stand), (10.0, -20.0, -340.0)))
+
+
+def test_the_ghost_is_at_the_target_and_gone_when_it_is_reached(stand: Any) -> None:
+    target = (80.0, 0.0, -330.0)
+    theta = tuple(stand.machine.robot.inverse(target).tolist())
+    ghost = stand.server.scene.get_handle_by_name("/ghost/robot")
+    effector = stand.server.scene.get_handle_by_name("/ghost/robot/effector")
+    stand.machine.be_at((0.0, 0.0, -330.0), target_xyz=target, target_theta=theta)
+    stand.eventually(lambda: ghost.visible and np.allclose(effector.position, (0.08, 0, -0.33)))
+    stand.machine.be_at(target)
+    stand.eventually(lambda: not ghost.visible)
+
+
+def test_another_robot_is_drawn_with_the_same_names(own_stand: Any, other_robot: Robot) -> None:
+    robots = (other_robot, own_stand.machine.robot)
+    before = nodes(own_stand)
+    counts: list[int] = []
+
+    def switches() -> Iterator[None]:
+        for i in range(12):
+            own_stand.machine.become(robots[i % 2])
+            yield
+            counts.append(buffered(own_stand))
+            yield
+
+    own_stand.draw(switches())
+    assert nodes(own_stand) == before
+    assert max(counts[8:]) == max(counts[4:8])  # nothing piles up
+    own_stand.machine.become(other_robot)
+    own_stand.eventually(lambda: own_stand.scene._robot is other_robot)
+    own_stand.eventually(lambda: np.allclose(drawn_tip(own_stand), (0, 0, -260)))
+
+
+def test_the_sliders_take_the_range_of_another_robot(
+    own_stand: Any, visit_own: Visit, other_robot: Robot
+) -> None:
+    visitor = visit_own("anna")
+    visitor.look()
+    z = visitor.input("Z mm")
+    own_stand.machine.become(other_robot)
+    lowest = visitor.read(
+        lambda m: m["type"] == "GuiUpdateMessage" and m["uuid"] == z and "min" in m["updates"]
+    )
+    assert lowest["updates"]["min"] == -290.0
+
+
+def test_an_unknown_pose_is_shown_as_a_shade(stand: Any) -> None:
+    beam = stand.server.scene.get_handle_by_name("/robot/arm0/beam")
+    stand.machine.snapshot = dataclasses.replace(stand.machine.snapshot, xyz=None, theta=None)
+    stand.eventually(lambda: beam.opacity is not None)
+    stand.machine.be_at((0.0, 0.0, -330.0))
+    stand.eventually(lambda: beam.opacity is None)
+
+
+def test_a_joint_at_its_limit_is_red(stand: Any) -> None:
+    hubs = [stand.server.scene.get_handle_by_name(f"/robot/arm{i}/hub") for i in range(3)]
+    stand.machine.be_at((0.0, 0.0, -330.0), margins=(1.0, 0.15, 0.0))
+    stand.eventually(lambda: tuple(hubs[2].color) == colours.tint(colours.STEEL, 0.0))
+    assert tuple(hubs[0].color) == colours.STEEL
+    assert tuple(hubs[1].color) not in (tuple(hubs[0].color), tuple(hubs[2].color))
+
+
+def test_sliders_show_the_target_unless_a_person_holds_them(stand: Any, visit: Visit) -> None:
+    stand.machine.follows = False
+    visitor = visit("anna")
+    visitor.look()
+    x, y = visitor.input("X mm"), visitor.input("Y mm")
+    stand.eventually(lambda: stand.server.get_clients())
+    visitor.send(type="GuiUpdateMessage", uuid=x, updates={"value": 77.7})
+    stand.eventually(lambda: stand.machine.of(FollowPoint))
+    stand.machine.be_at((0.0, 0.0, -330.0), target_xyz=(20.0, 33.3, -330.0))
+    # Both sliders are moved to the target; the held one when it was let go.
+    first = visitor.read(lambda m: m.get("updates") in ({"value": 20.0}, {"value": 33.3}))
+    assert (first["uuid"], first["updates"]) == (y, {"value": 33.3})
+    visitor.read(lambda m: m.get("uuid") == x and m.get("updates") == {"value": 20.0})
+
+
+def test_a_refusal_is_told_to_who_asked(stand: Any, visit: Visit) -> None:
+    stand.machine.refusal = "The robot is disabled. Press <Enable>."
+    visitor = visit("anna")
+    visitor.look()
+    x = visitor.input("X mm")
+    stand.eventually(lambda: stand.server.get_clients())
+    visitor.send(type="GuiUpdateMessage", uuid=x, updates={"value": -12.3})
+    note = visitor.read(lambda m: "disabled. Press" in str(m.get("updates", {}).get("content")))
+    assert "&lt;Enable&gt;" in note["updates"]["content"]
+
+
+def test_viewers_see_the_panel_and_cannot_use_it(stand: Any, visit: Visit) -> None:
+    visitor = visit("boris")
+    visitor.look()
+    x = visitor.input("X mm")
+
+    def set_to(disabled: bool) -> Callable[[dict[str, Any]], bool]:
+        return lambda m: m.get("uuid") == x and m.get("updates") == {"disabled": disabled}
+
+    visitor.read(set_to(False))
+    stand.machine.be_held_by("anna")
+    visitor.read(set_to(True))
+    stand.machine.be_held_by("boris")
+    visitor.read(set_to(False))
+
+
+def test_the_theme_is_each_session_s_own(stand: Any, visit: Visit) -> None:
+    day, night = visit("day"), visit("night")
+    for visitor in (day, night):
+        visitor.look()
+        visitor.read(lambda m: m["type"] == "ThemeConfigurationMessage" and not m["dark_mode"])
+    stand.eventually(lambda: len(stand.server.get_clients()) == 2)
+    stand.scene.set_theme("night", True)
+    night.read(lambda m: m["type"] == "ThemeConfigurationMessage" and m["dark_mode"])
+    again = visit("night")
+    again.look()
+    again.read(lambda m: m["type"] == "ThemeConfigurationMessage" and m["dark_mode"])
+    assert not [m for m in day.seen if m.get("dark_mode")]
+
+
+def test_the_camera_s_yaw_is_its_session_s(
+    stand: Any, visit: Visit, camera_message: dict[str, Any]
+) -> None:
+    assert stand.scene.camera_yaw("anna") is None
+    visitor = visit("anna")
+    # Looking along +y, up is z: right is +x.
+    half = math.sqrt(0.5)
+    visitor.send(**{**camera_message, "wxyz": [half, -half, 0, 0]})
+    yaw = stand.eventually(lambda: stand.scene.camera_yaw("anna") is not None)
+    assert yaw
+    assert stand.scene.camera_yaw("anna") == pytest.approx(0.0, abs=1e-6)
+    assert stand.scene.camera_yaw("boris") is None
+
+
+def test_the_handle_stays_large_enough_for_a_finger(
+    stand: Any, visit: Visit, camera_message: dict[str, Any]
+) -> None:
+    visitor = visit("anna")
+    visitor.look()
+
+    def radius_at(distance: float) -> float:
+        position = [0.0, -distance, -0.33]
+        visitor.send(**{**camera_message, "position": position, "image_height": 752})
+        near = distance * 0.07 / 0.7
+        message = visitor.read(
+            lambda m: (
+                m.get("name") == "/robot/effector/handle"
+                and abs(m.get("updates", {}).get("scale", 0.0) / near - 0.5) < 0.5
+            )
+        )
+        return message["updates"]["scale"]
+
+    for distance in (1.0, 4.0):
+        pixels = radius_at(distance) * 752 / (2 * math.tan(0.35) * distance)
+        assert 2 * pixels >= 44
+
+
+def test_the_trail_is_as_long_as_it_is(steady: np.random.Generator) -> None:
+    trail = TrailPoints()
+    assert trail.segments().shape == (SEGMENTS, 2, 3)
+    now = 0.0
+    for point in np.cumsum(steady.normal(0, 4.0, (500, 3)), axis=0):
+        now += 0.02
+        trail.pass_through(tuple(point), now)
+        newest = trail.segments()[0, 0]
+        assert newest == pytest.approx(point)
+    segments = trail.segments()
+    assert np.allclose(segments[1:, 0], segments[:-1, 1])  # one line
+    trail.pass_through(tuple(point), now + 60.0)
+    assert np.allclose(trail.segments(), point)  # long forgotten
+
+
+@pytest.mark.parametrize(("reach", "depth"), [(0.24, (-0.44, -0.225)), (0.62, (-0.9, -0.65))])
+def test_the_robot_fits_into_a_picture_that_is_a_little_upright(
+    reach: float, depth: tuple[float, float]
+) -> None:
+    view = framing.frame(reach=reach, depth=depth)
+    away = view.position - view.look_at
+    half = math.atan(0.9 * math.tan(framing.FIELD_OF_VIEW / 2))
+    assert math.asin(view.radius / np.linalg.norm(away)) <= half * 1.1
+    assert view.floor < depth[0]
