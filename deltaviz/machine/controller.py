@@ -110,6 +110,7 @@ class Controller(Core):
             return i.Refused(i.RefusalKind.MODE, not_ready)
         self._control.take(intent.client)
         self._activity = activity
+        self._aims = activity.kind is not Kind.JOG
         self._stop_reason = None
         self._enter(event)
         return ACCEPTED

@@ -76,6 +76,7 @@ class Core:
         self._follower = follower
         self._drive: Drive | None = None
         self._activity: Activity | None = None
+        self._aims = False  # the last activity had a target, which a jog has not
         self._control = ControlLease()
         self._presses = Presses()
         self._speeds = Speedometer(robot)
@@ -284,8 +285,11 @@ class Core:
         if drive is not None and drive.homed:
             follower = drive.follower
             command_theta, command_xyz = finite(follower.theta), finite(follower.xyz)
-            target_theta, target_xyz = finite(follower.target_theta), finite(follower.target_xyz)
-            held_by = follower.held_by if self._activity is not None else ()
+            target_theta, target_xyz = command_theta, command_xyz
+            if self._aims:
+                target_theta = finite(follower.target_theta)
+                target_xyz = finite(follower.target_xyz)
+            held_by = follower.held_by
         telemetry = None if session is None else session.telemetry
         fault = None if telemetry is None else telemetry.fault
         return Snapshot(

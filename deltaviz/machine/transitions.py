@@ -33,8 +33,8 @@ class Event(StrEnum):
     STOP = "stop"
     ESTOP = "e-stop"
     # What the board and the link report.
-    RESTS_HOMED = "rests, homed"
-    RESTS_UNHOMED = "rests, unhomed"
+    RESTS_HOMED = "rests homed"
+    RESTS_UNHOMED = "rests unhomed"
     BRAKES = "board brakes"
     OFF = "drivers off"
     FAULTS = "board faults"
