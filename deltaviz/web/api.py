@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Request
 
+from deltaviz.link.ports import list_links
 from deltaviz.machine import intent
 from deltaviz.machine.port import MachinePort
 from deltaviz.web import models
@@ -79,11 +80,7 @@ def _add_looks(router: APIRouter, machine: MachinePort) -> None:
     @router.get("/ports")
     def ports() -> list[models.Port]:
         """The links that can be chosen, by id."""
-        from deltaviz.link.ports import list_ports  # loads pyserial
-
-        simulated = models.Port(id="sim", description="Simulated board")
-        found = [models.Port(id=port.id, description=port.description) for port in list_ports()]
-        return [simulated, *found]
+        return [models.Port(id=link.id, description=link.description) for link in list_links()]
 
 
 def _add_motion(router: APIRouter, machine: MachinePort) -> None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import logging
 import math
+import secrets
 import time
 from collections import OrderedDict
 from collections.abc import Callable, Sequence
@@ -76,6 +77,7 @@ class Conversation:
         self._beats = Allowance(burst=BEATS_BURST, per_second=BEATS_PER_SECOND)
         self._errors = Allowance(burst=ERRORS_BURST, per_second=ERRORS_PER_SECOND)
         self._complaints = Allowance(burst=1, per_second=1)
+        self._clock = secrets.token_hex(8)  # two tabs of a session have two clocks
         self._presses: OrderedDict[str, Press] = OrderedDict()
 
     def hear(self, text: str | None, now: float | None = None) -> Verdict:
@@ -119,7 +121,8 @@ class Conversation:
                 self._presses.pop(message.id, None)
                 self._post(message, intent.JogEnd(client, message.id))
             case messages.DragAlive():
-                beat = intent.DragAlive(client, message.seq, message.t_ms, now)
+                clock = self._clock
+                beat = intent.DragAlive(client, message.seq, message.t_ms, now, clock)
                 self._post(message, beat)
             case messages.SetOverride():
                 self._post(message, intent.SetOverride(client, message.value))
@@ -149,8 +152,12 @@ class Conversation:
             self._refused(message, "This jog is over, or never began; press again.")
             return
         velocity = self._velocity(message, press)
-        beat = intent.JogBeat(self._client, message.id, message.seq, message.t_ms, velocity, now)
-        self._post(message, beat)
+        self._post(
+            message,
+            intent.JogBeat(
+                self._client, message.id, message.seq, message.t_ms, velocity, now, self._clock
+            ),
+        )
 
     def _velocity(
         self, message: messages.JogStart | messages.Jog, press: Press
@@ -186,11 +193,12 @@ class Conversation:
         return Verdict.GO_ON if self._errors.take(now) else Verdict.HANG_UP
 
     def _complain(self, now: float) -> None:
+        if not self._complaints.take(now):
+            return
         if self._logged.may_say((self._client, "flood")):
             log.warning("A page sends too much; all but its stops is dropped.")
-        if self._complaints.take(now):
-            detail = f"Too many messages; about {MESSAGES_PER_SECOND:g} a second are read."
-            self._reply({"type": "error", "detail": detail})
+        detail = f"Too many messages; about {MESSAGES_PER_SECOND:g} a second are read."
+        self._reply({"type": "error", "detail": detail})
 
 
 def _what_is_wrong(error: ValidationError) -> str:

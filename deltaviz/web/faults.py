@@ -33,7 +33,8 @@ def _field(path: Sequence[str | int]) -> str:
         if isinstance(part, int):
             text += f"[{part}]"
         else:
-            text += f".{part}" if text else part
+            name = part if part.isidentifier() else repr(part)  # it may be anything
+            text += f".{name}" if text else name
     return _short(text)
 
 

@@ -11,8 +11,8 @@ import socket
 import sys
 import threading
 import webbrowser
-from collections.abc import Callable
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Coroutine
+from typing import TYPE_CHECKING, Any
 
 from deltaviz.web.listening import ListenError, listen, name_of
 
@@ -23,6 +23,7 @@ if TYPE_CHECKING:  # these load while the machine's process starts
 
 OK, FAILED = 0, 1
 FORCED = 128 + signal.SIGINT
+CONNECT_PATIENCE = 5.0  # s; loading the compiled kernels takes one, compiling them many more
 REST_TIMEOUT = 0.8  # s for the robot to come to rest and its processes to end
 LAST_MOMENT = 1.9  # s after the signal; what has not ended by then is left to end by itself
 _SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
@@ -72,9 +73,7 @@ class _Life:
             loop.add_signal_handler(number, self._end)
         try:
             server = await self._start(robot, link)
-            serving = asyncio.create_task(server.serve(sockets=[self._listener]))
-            ending = asyncio.create_task(self._ending.wait())
-            await asyncio.wait((serving, ending), return_when=asyncio.FIRST_COMPLETED)
+            serving = await self._unless_ending(server.serve(sockets=[self._listener]))
             server.should_exit = True
             await serving
         finally:
@@ -86,7 +85,21 @@ class _Life:
         loading = asyncio.create_task(asyncio.to_thread(_load))
         self._machine = await starting
         await loading
-        return await asyncio.to_thread(self._build, self._machine)
+        server = await asyncio.to_thread(self._build, self._machine)
+        await self._connected(self._machine)
+        return server
+
+    async def _connected(self, machine: MachineClient) -> None:
+        """Wait a little, so that the first page shows a robot; without it, it says why not."""
+        await self._unless_ending(asyncio.to_thread(machine.ready, CONNECT_PATIENCE))
+
+    async def _unless_ending(self, what: Coroutine[Any, Any, Any]) -> asyncio.Task[Any]:
+        """Wait until this is done, or we are told to end."""
+        task = asyncio.create_task(what)
+        ending = asyncio.create_task(self._ending.wait())
+        await asyncio.wait((task, ending), return_when=asyncio.FIRST_COMPLETED)
+        ending.cancel()
+        return task
 
     def _build(self, machine: MachineClient) -> Server:
         from deltaviz.scene.view import Scene

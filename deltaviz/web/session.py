@@ -51,8 +51,10 @@ class Sessions:
     def open_sockets(self) -> int:
         return sum(self._sockets.values())
 
-    def opened(self, client: str) -> None:
+    def opened(self, client: str) -> bool:
+        """Count one socket of this client; True when it is the first."""
         self._sockets[client] = self._sockets.get(client, 0) + 1
+        return self._sockets[client] == 1
 
     def closed(self, client: str) -> bool:
         """Forget one socket of this client; True when it was the last."""

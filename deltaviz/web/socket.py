@@ -11,7 +11,7 @@ from collections import deque
 from fastapi import WebSocket
 from starlette.websockets import WebSocketDisconnect, WebSocketState
 
-from deltaviz.machine.intent import ClientGone
+from deltaviz.machine.intent import ClientGone, ClientHere
 from deltaviz.machine.port import MachinePort
 from deltaviz.web.conversation import Conversation, Reply, Verdict
 from deltaviz.web.once import OncePerMinute
@@ -48,7 +48,8 @@ class Pages:
             await websocket.close(_TRY_AGAIN_LATER, f"{MAX_SOCKETS} pages are open already")
             return
         client = self._sessions.client_of_socket(websocket)
-        self._sessions.opened(client)
+        if self._sessions.opened(client):
+            self._machine.post(ClientHere(client))
         try:
             await websocket.accept()
             await self._talk(websocket, client)

@@ -153,7 +153,6 @@ def test_a_link_from_another_site_does_not_replace_the_session(client: TestClien
         "/..%5csecret.txt",
         "/....//secret.txt",
         "/static/../../secret.txt",
-        "//secret.txt",
         "/main.js/../../secret.txt",
         "/secret.txt%00.js",
         "/%00",

@@ -14,9 +14,10 @@ import pytest
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection
 
-from deltaviz.machine.intent import ClientGone, Enable, JogStart, RefusalKind, Refused
+from deltaviz.machine.intent import ClientGone, ClientHere, Enable, JogStart, RefusalKind, Refused
 from deltaviz.machine.mode import Mode
 from deltaviz.web.conversation import MAX_MESSAGE
+from deltaviz.web.socket import STATE_PERIOD
 
 STOP = json.dumps({"type": "stop"})
 
@@ -29,15 +30,18 @@ def receive(connection: ClientConnection, kind: str) -> dict[str, Any]:
             return message
 
 
-def test_states_come_by_themselves_at_30_hz_or_better(live: Any, machine: Any) -> None:
+def stops(machine: Any) -> int:
+    return sum(told[0] == "stop" for told in machine.told if isinstance(told, tuple))
+
+
+def test_states_come_by_themselves(live: Any) -> None:
     with live.socket() as connection:
-        receive(connection, "state")
-        began = time.monotonic()
-        states = [receive(connection, "state") for _ in range(60)]
-        took = time.monotonic() - began
+        states = [receive(connection, "state") for _ in range(10)]
     assert states[0].keys() >= {"mode", "xyz_mm", "theta_deg", "link", "control"}
-    # Measured in our own period, not the clock's: a loaded computer is slow at both ends.
-    assert took < 60 / 30 or took > 20 / 30
+
+
+def test_they_are_meant_to_come_at_30_hz_or_better() -> None:
+    assert STATE_PERIOD <= 0.8 / 30  # with room for a busy computer's delays
 
 
 def test_a_state_is_the_newest(live: Any, machine: Any, eventually: Any) -> None:
@@ -52,7 +56,8 @@ def test_requests_and_sockets_of_a_page_are_one_client(live: Any, machine: Any) 
     with live.socket(page) as connection:
         receive(connection, "state")
         httpx.post(f"{live.url}/api/enable", headers={"Cookie": page})
-        (told,) = machine.told_of(Enable)
+        (here,), (told,) = machine.told_of(ClientHere), machine.told_of(Enable)
+        assert here.client == told.client
         machine.show(holder=told.client)
         while not receive(connection, "state")["control"]["you"]:
             pass
@@ -107,28 +112,32 @@ def test_after_a_malformed_message_the_socket_goes_on(live: Any, machine: Any, b
         assert receive(connection, "error")["detail"]
         connection.send(STOP)
         receive(connection, "state")
-        while not machine.told:
+        while not stops(machine):
             receive(connection, "state")
-        assert machine.told[0][0] == "stop"
 
 
-def test_errors_without_end_are_hung_up_on(live: Any, eventually: Any) -> None:
-    with live.socket() as connection, pytest.raises(ConnectionClosed) as closed:
-        for _ in range(200):
-            connection.send("nonsense")
+def close_code(connection: ClientConnection) -> int | None:
+    """Read until the server closes; its code."""
+    try:
         while True:
             connection.recv(timeout=20)
-    assert closed.value.rcvd is not None
-    assert closed.value.rcvd.code == 1008
+    except ConnectionClosed as closed:
+        return closed.rcvd.code if closed.rcvd else None
+
+
+def test_errors_without_end_are_hung_up_on(live: Any) -> None:
+    with live.socket() as connection:
+        for _ in range(40):
+            connection.send("nonsense")
+        assert close_code(connection) == 1008
 
 
 @pytest.mark.parametrize("bad", [b"\xff\xfe", b"x" * 100_000])
 def test_what_is_no_websocket_message_ends_that_socket_only(live: Any, bad: bytes) -> None:
     with live.socket() as other:
-        with live.socket() as connection, pytest.raises(ConnectionClosed):
+        with live.socket() as connection:
             connection.send(bad, text=True)
-            while True:
-                connection.recv(timeout=20)
+            assert close_code(connection) in (1007, 1009)
         receive(other, "state")
 
 
@@ -163,10 +172,6 @@ class Flood:
     def __exit__(self, *_: object) -> None:
         self._over.set()
         self._thread.join(20)
-
-
-def stops(machine: Any) -> int:
-    return sum(told[0] == "stop" for told in machine.told if isinstance(told, tuple))
 
 
 def test_stops_arrive_while_another_floods(
@@ -216,7 +221,5 @@ def test_so_many_pages_and_no_more(live: Any, monkeypatch: pytest.MonkeyPatch) -
     with live.socket() as one, live.socket() as two:
         receive(one, "state")
         receive(two, "state")
-        with live.socket() as three, pytest.raises(ConnectionClosed) as closed:
-            three.recv(timeout=20)
-        assert closed.value.rcvd is not None
-        assert closed.value.rcvd.code == 1013
+        with live.socket() as three:
+            assert close_code(three) == 1013
