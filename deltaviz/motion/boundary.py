@@ -14,7 +14,7 @@ from deltaviz.motion.followed import Array
 from deltaviz.motion.space import Space
 
 RESERVE = 0.25  # units of margin, about mm
-ON_LINE = 48  # samples of a line
+SHARES = np.linspace(0.0, 1.0, 49)[1:, None]  # samples of a line
 PROBE = 1e-3  # mm; step of the margins' differences
 NEAR = 60.0  # margins above this do not matter to a step of at most STEP mm
 STEP = 15.0  # mm; the longest step along the boundary
@@ -42,14 +42,14 @@ class Boundary:
 
     def clear(self, start: Array, end: Array, floor: Array) -> bool:
         """Whether the line keeps above the floor, sampled; violated margins must not get worse."""
-        margins = self._space.margins(_line(start, end, ON_LINE))
+        margins = self._space.margins(_line(start, end))
         return first_illegal(margins, np.minimum(floor, 0.0)) < 0
 
     def last_legal(self, start: Array, end: Array, floor: Array) -> Array:
         """The furthest place on the line from `start` that is above the floor all the way."""
         near, far = start, end
         for _ in range(2):
-            points = _line(near, far, ON_LINE)
+            points = _line(near, far)
             margins = self._space.margins(points)
             bad = first_illegal(margins, floor)
             if bad < 0:
@@ -105,5 +105,5 @@ class Boundary:
         return at
 
 
-def _line(start: Array, end: Array, count: int) -> Array:
-    return start + (end - start) * np.linspace(0.0, 1.0, count + 1)[1:, None]
+def _line(start: Array, end: Array) -> Array:
+    return start + (end - start) * SHARES

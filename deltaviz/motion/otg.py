@@ -8,20 +8,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from ruckig import (
-    ControlInterface,
-    InputParameter,
-    Result,
-    Ruckig,
-    RuckigError,
-    Synchronization,
-    Trajectory,
-)
+import ruckig
 
 from deltaviz.motion.compiled import compiled
 from deltaviz.motion.followed import Array
+
+_otg: Any = ruckig  # it has no types
 
 PIECES = 11  # of constant jerk in one profile: 2 that bring it within limits, 7, 2 to leave them
 
@@ -48,9 +43,9 @@ class Generator:
     """Makes motions of `axes` axes. `scale` turns a unit of length into what ruckig is fed."""
 
     def __init__(self, axes: int, scale: float) -> None:
-        self._otg = Ruckig(axes)
-        self._input = InputParameter(axes)
-        self._trajectory = Trajectory(axes)
+        self._ruckig = _otg.Ruckig(axes)
+        self._input = _otg.InputParameter(axes)
+        self._trajectory = _otg.Trajectory(axes)
         self._axes = axes
         self._scale = scale
         self._input.current_position = [0.0] * axes
@@ -65,19 +60,17 @@ class Generator:
         given.max_velocity = (request.max_velocity * scale).tolist()
         given.max_acceleration = (request.max_acceleration * scale).tolist()
         given.max_jerk = (request.max_jerk * scale).tolist()
-        alike = Synchronization.Phase if request.together else Synchronization.No
+        alike = _otg.Synchronization.Phase if request.together else _otg.Synchronization.No
         given.per_dof_synchronization = [alike] * self._axes
         given.per_dof_control_interface = [
-            ControlInterface.Position if held else ControlInterface.Velocity
+            _otg.ControlInterface.Position if held else _otg.ControlInterface.Velocity
             for held in request.held
         ]
         try:
-            if self._otg.calculate(given, self._trajectory) not in (
-                Result.Working,
-                Result.Finished,
-            ):
-                return None
-        except RuckigError:
+            result = self._ruckig.calculate(given, self._trajectory)
+        except _otg.RuckigError:
+            return None
+        if result not in (_otg.Result.Working, _otg.Result.Finished):
             return None
         return self._rows(request, period)
 

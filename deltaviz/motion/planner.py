@@ -13,8 +13,9 @@ from deltaviz.motion.shaping import Shaper, Way
 from deltaviz.motion.space import CartesianSpace, JointSpace, Space
 
 TRIES = 5  # of one tick, over all ways
-AIM = 0.97  # of a limit: where a slower try should end up
+AIM = 0.985  # of a limit: where a slower try should end up
 RESERVE = 0.997  # of the joints' limits: the rest is for rounding to the board's numbers
+TIP_RESERVE = 0.9985  # of the tip's: the rest is for what lies between the knots
 RECOVERY = 1.3  # how much of what was given up is asked for again at the next plan
 BRAKE_SLOWER = 0.6  # a brake that leaves the legal region: go slower by this
 
@@ -31,8 +32,8 @@ class Planner:
             robot.kernel,
             velocity=np.asarray(joint.velocity, dtype=float) * RESERVE,
             acceleration=np.asarray(joint.acceleration, dtype=float) * RESERVE,
-            tip_velocity=tip.velocity,
-            tip_acceleration=tip.acceleration,
+            tip_velocity=tip.velocity * TIP_RESERVE,
+            tip_acceleration=tip.acceleration * TIP_RESERVE,
         )
         self._shapers = {space: Shaper(space, period) for space in spaces}
         self._period = period
@@ -48,6 +49,11 @@ class Planner:
         """A tick begins: its budget of time and tries is whole."""
         self._ends = self._clock() + self._budget
         self._tries = 0
+        self.refused = None
+
+    def forget(self) -> None:
+        """As if nothing had been planned: the full limits come first again."""
+        self.velocity = self.acceleration = 1.0
         self.refused = None
 
     @property

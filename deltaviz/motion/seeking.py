@@ -48,6 +48,10 @@ class Seeker:
         inner = self._boundary.last_legal(self._inside, target, self._floor)
         self._starts = [self.goal, inner, line, *self._around(target)]
 
+    def forget(self) -> None:
+        """As if there had been no target."""
+        self._target, self._starts, self._descending = None, [], None
+
     def improve(self) -> bool:
         """A few more steps towards the nearest place; whether the goal moved."""
         if self._target is None or self.exact or not (self._starts or self._descending is not None):

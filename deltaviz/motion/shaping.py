@@ -18,7 +18,7 @@ from deltaviz.motion.otg import Generator, Request
 from deltaviz.motion.space import CartesianSpace, Space
 
 ASIDE = 0.05  # least share of the limits for an axis that has nothing to do
-HEADROOM = 0.998  # of the limits: cubics through exact knots ripple
+HEADROOM = 0.997  # of the limits: cubics through exact knots ripple
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,14 +26,15 @@ def check_straight(robot: Followed, xyz_from: ArrayLike, xyz_to: ArrayLike) -> s
         return "The target must be finite numbers"
     length = float(np.linalg.norm(end - start))
     count = min(MOST, max(2, math.ceil(length / SPACING)))
-    points = np.ascontiguousarray(start + (end - start) * np.linspace(0, 1, count + 1)[:, None])
+    points = np.ascontiguousarray(start + (end - start) * np.linspace(0, 1, count)[:, None])
     margins = robot.kernel.margins(points, robot.kernel.inverse(points))
     bad = first_illegal(margins, np.minimum(margins[0], 0.0))
     if bad < 0:
         return None
     column = int(np.argmin(np.where(np.isnan(margins[bad]), -np.inf, margins[bad])))
-    words = HeldBy(robot).words(robot.margin_names[column])
+    limit = HeldBy(robot).words(robot.margin_names[column])
+    why = limit[0].lower() + limit[1:]
     place = ", ".join(f"{value:.1f}" for value in points[bad])
-    if bad == count:
-        return f"The target ({place}) mm is not reachable: {words[0].lower()}{words[1:]}"
-    return f"The straight way leaves the reachable space at ({place}) mm: {words[0].lower()}{words[1:]}"
+    if bad == count - 1:
+        return f"The target ({place}) mm is not reachable: {why}"
+    return f"The straight way leaves the reachable space at ({place}) mm: {why}"

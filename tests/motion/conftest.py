@@ -106,7 +106,7 @@ class Delta:
         low, high = np.radians(joints["min_deg"]), np.radians(joints["max_deg"])
         sideways = np.abs((rods * self.side).sum(-1))
         most = self.fore * np.sin(np.radians(joints["ball_joint_max_deg"]))
-        place = tip - np.asarray(file["geometry"].get("tool_offset", [0, 0, 0])) * -1.0
+        place = tip + np.asarray(file["geometry"].get("tool_offset", [0, 0, 0]))
         result = {
             "finite": np.where(np.isfinite(tip).all(-1), -1.0, 1e9),
             "joint range": np.maximum(low - theta, theta - high).max(-1) * self.upper,
@@ -189,14 +189,13 @@ class Judge:
         path = theta[:, None] + rate[:, None] * time * (share - share**2 / 2)
         return path.reshape(-1, theta.shape[-1])
 
-    def _jerk(self, tip: Array, time: Array, commanded: Array) -> float:
+    def _jerk(self, tip: Array, time: Array, commanded: NDArray[np.bool_]) -> float:
         """The third difference over equal segments is a mean of the plan's jerk."""
         if len(tip) < 4:
             return 0.0
         third = tip[3:] - 3 * tip[2:-1] + 3 * tip[1:-2] - tip[:-3]
-        fine = np.ones(len(third), dtype=bool)
-        for k in range(4):
-            fine &= commanded[k : len(third) + k] & np.isclose(time[k : len(third) + k], PERIOD)
+        alike = commanded & np.isclose(time, PERIOD)
+        fine = alike[:-3] & alike[1:-2] & alike[2:-1] & alike[3:]
         jerk = np.linalg.norm(third, axis=-1)[fine] / PERIOD**3
         return float(jerk.max(initial=0) / self.jerk)
 
@@ -235,7 +234,7 @@ def random_goal(robot: Robot, delta: Delta, rng: np.random.Generator, mode: str)
         case "edge":
             way = rng.normal(size=3)
             way *= width * rng.uniform(0.9, 1.4) / np.linalg.norm(way)
-            return ToPoint(tuple(map(float, way + [0, 0, (low + high) / 2])), speed)
+            return ToPoint(tuple(map(float, way + np.array([0, 0, (low + high) / 2]))), speed)
         case "far":
             return ToPoint(tuple(rng.uniform([-900, -900, -1500], [900, 900, 100]).tolist()))
         case "angles":
