@@ -227,12 +227,13 @@ def _check_ready(robot: made.Robot, file: schema.RobotFile) -> None:
         raise Inconsistent(
             "workspace", "as given", "must hold at least one point that the robot can reach"
         )
-    worst = robot.margin_names[int(np.argmin(margins))]
+    broken = zip(robot.margin_names, margins.tolist(), strict=True)
+    limits = ", ".join(str(name) for name, margin in broken if margin < 0)
     where = ", ".join(f"{value:.1f}" for value in tip)
     raise Inconsistent(
         "homing.ready_deg",
         given,
-        f"must lie within all limits; there the tool tip is at ({where}) mm, beyond the {worst}",
+        f"must lie within all limits; there the tool tip is at ({where}) mm, beyond: {limits}",
     )
 
 

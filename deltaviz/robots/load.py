@@ -84,14 +84,16 @@ def _unknown_preset(name: str) -> str:
 def _problems(error: ValidationError, model: Any) -> list[tuple[str, str]]:
     """(field, what is wrong with it) of each problem that pydantic found."""
     found: list[tuple[str, str]] = []
+    meant = {_meant(problem["loc"], model) for problem in error.errors()}
     for problem in error.errors():
-        parts = [str(part) for part in problem["loc"]]
-        field = ".".join(parts)
+        field = ".".join(str(part) for part in problem["loc"])
         kind, value = problem["type"], problem["input"]
         if kind == "missing":
+            if problem["loc"] in meant:
+                continue  # told already, as a misspelt field
             text = f"{field} is missing"
         elif kind == "extra_forbidden":
-            text = f"{field} is not a known field{_nearest(parts, model)}"
+            text = f"{field} is not a known field{_hint(problem['loc'], model)}"
         elif kind in ("model_type", "model_attributes_type"):
             text = f"{field} = {value!r}: must be a section, [{field}]"
         elif kind == "literal_error":
@@ -102,12 +104,27 @@ def _problems(error: ValidationError, model: Any) -> list[tuple[str, str]]:
     return found
 
 
-def _nearest(parts: list[str], model: Any) -> str:
-    """The known fields beside a misspelt one, the nearest of them first in mind."""
-    for part in parts[:-1]:
-        model = model.model_fields[part].annotation
-    known = list(model.model_fields)
-    near = difflib.get_close_matches(parts[-1], known, n=1)
-    if near:
-        return f"; did you mean {near[0]!r}?"
-    return f"; known here: {', '.join(known)}"
+def _hint(location: tuple[int | str, ...], model: Any) -> str:
+    meant = _meant(location, model)
+    if meant:
+        return f"; did you mean {meant[-1]!r}?"
+    return f"; known here: {', '.join(_known(location, model))}"
+
+
+def _meant(location: tuple[int | str, ...], model: Any) -> tuple[int | str, ...]:
+    """The known field that a misspelt one is nearest to; empty if none is near or it is known."""
+    known = _known(location, model)
+    if not known or location[-1] in known:
+        return ()
+    near = difflib.get_close_matches(str(location[-1]), known, n=1)
+    return (*location[:-1], near[0]) if near else ()
+
+
+def _known(location: tuple[int | str, ...], model: Any) -> list[str]:
+    """The fields of the section that a location stands in."""
+    for part in location[:-1]:
+        field = getattr(model, "model_fields", {}).get(part)
+        if field is None:
+            return []
+        model = field.annotation
+    return list(getattr(model, "model_fields", {}))

@@ -1,0 +1,19 @@
+import pytest
+
+from deltaviz.robots import Robot, load_robot, preset_names
+from deltaviz.robots.presets import preset_text
+
+
+@pytest.fixture(scope="session")
+def stm32() -> Robot:
+    return load_robot("stm32")
+
+
+@pytest.fixture(scope="session")
+def stm32_text() -> str:
+    return preset_text("stm32")
+
+
+@pytest.fixture(scope="session", params=preset_names())
+def preset(request: pytest.FixtureRequest) -> Robot:
+    return load_robot(request.param)

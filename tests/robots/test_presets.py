@@ -1,0 +1,107 @@
+"""The presets: the geometry that was published, and limits that hang together."""
+
+import math
+
+import numpy as np
+import pytest
+
+from deltaviz.mechanism import RotaryDelta
+from deltaviz.robots import Robot, load_robot, preset_names
+from deltaviz.robots.robot import DriveKind
+
+
+def delta(robot: Robot) -> RotaryDelta:
+    assert isinstance(robot.mechanism, RotaryDelta)
+    return robot.mechanism
+
+
+def test_names_with_the_default_first():
+    assert preset_names() == ("stm32", "deltadraw", "trossen", "zheng2023")
+
+
+def test_stm32_is_the_robot_of_the_contract():
+    robot = load_robot("stm32")
+    assert (robot.name, robot.kind, robot.joint_count) == ("stm32", "rotary_delta", 3)
+    assert np.degrees(robot.joints.min) == pytest.approx([-45] * 3)
+    assert np.degrees(robot.joints.max) == pytest.approx([90] * 3)
+    assert math.degrees(robot.joints.ball_joint_max) == pytest.approx(45)
+    assert robot.workspace.z == (-440, -225)
+    assert robot.workspace.radius == 230
+    assert np.degrees(robot.limits.joint.velocity) == pytest.approx([340] * 3)
+    assert np.degrees(robot.limits.joint.acceleration) == pytest.approx([4500] * 3)
+    assert np.degrees(robot.limits.joint.unhomed_velocity) == pytest.approx([5] * 3)
+    cartesian = robot.limits.cartesian
+    assert (cartesian.velocity, cartesian.acceleration, cartesian.jerk) == (600, 6000, 150000)
+    assert robot.drive.microsteps_per_rad == pytest.approx([3200 / (2 * math.pi)] * 3)
+    assert robot.drive.driver == "DRV8825"
+    assert robot.homing.direction == -1
+    assert np.degrees(robot.homing.switch) == pytest.approx([-50] * 3)
+    assert robot.homing.together
+    assert robot.homing.ready == (0, 0, 0)
+    assert robot.forward(robot.homing.ready) == pytest.approx([0, 0, -294.98983], abs=1e-5)
+
+
+def test_trossen_is_given_by_its_sides():
+    robot = load_robot("trossen")
+    assert robot.forward([0, 0, 0]) == pytest.approx([0, 0, -96.859015171], abs=1e-9)
+    assert delta(robot).azimuths_deg == (-90, 30, 150)
+    assert robot.drive.microsteps_per_rad[0] == pytest.approx(3 * 3200 / (2 * math.pi))
+
+
+def test_zheng2023_is_table_1_and_its_cylinder_fits():
+    robot = load_robot("zheng2023")
+    mechanism = delta(robot)
+    assert mechanism.upper_arm[0] == 360
+    assert mechanism.forearm[0] == 900
+    assert (mechanism.base_radius[0], mechanism.effector_radius[0]) == (260, 50)
+    around = np.linspace(0, 2 * math.pi, 361)
+    for z in np.linspace(*robot.workspace.z, 27):
+        rim = np.stack([505 * np.cos(around), 505 * np.sin(around), 0 * around + z], axis=-1)
+        assert (robot.margins(rim, robot.inverse(rim)) >= 0).all()
+
+
+def test_deltadraw_draws_in_simulation_only():
+    robot = load_robot("deltadraw")
+    assert robot.drive.kind is DriveKind.SERVO
+    assert robot.drive.simulation_only
+    assert robot.drive.microsteps_per_rad == pytest.approx([8000 / (2 * math.pi)] * 3)
+    assert not load_robot("stm32").drive.simulation_only
+    offset = delta(robot).base_radius[0] - delta(robot).effector_radius[0]
+    assert offset == pytest.approx(1.11125 * 25.4)
+
+
+def test_ready_is_well_inside(preset):
+    tip = preset.forward(preset.homing.ready)
+    assert preset.margins(tip, preset.homing.ready).min() > 5
+    assert preset.reach(tip).legal
+
+
+def test_most_of_the_workspace_is_within_reach(preset):
+    space = preset.workspace
+    wide = space.radius or max(space.x[1], space.y[1])
+    low, high = [-wide, -wide, space.z[0]], [wide, wide, space.z[1]]
+    points = np.random.default_rng(3).uniform(low, high, (5000, 3))
+    if space.radius is not None:
+        points = points[np.hypot(points[:, 0], points[:, 1]) <= space.radius]
+    else:
+        points = points[(np.abs(points[:, :2]) <= [space.x[1], space.y[1]]).all(axis=-1)]
+    legal = (preset.kernel.margins(points, preset.kernel.inverse(points)) >= 0).all(axis=-1)
+    assert legal.mean() > 0.7
+
+
+def test_no_type_2_singularity_within_the_joint_limits(preset):
+    """s + L < l: the published evidence holds for joints within ±90°."""
+    for arm in delta(preset).arms:
+        assert arm.offset + arm.upper_arm < arm.forearm
+    assert max(np.abs([preset.joints.min, preset.joints.max]).flat) <= math.radians(90)
+
+
+def test_the_cartesian_speed_is_within_the_joints_means_at_ready(preset):
+    jacobian = preset.jacobian(preset.homing.ready)
+    turning = np.abs(np.linalg.inv(jacobian)).max() * preset.limits.cartesian.velocity
+    assert turning < 1.5 * preset.limits.joint.velocity[0]
+
+
+def test_the_switches_can_be_reached_by_all_arms_at_once(preset):
+    assert np.isfinite(preset.forward(preset.homing.switch)).all()
+    assert (np.array(preset.homing.switch) <= preset.joints.min).all()
