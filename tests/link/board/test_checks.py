@@ -1,0 +1,229 @@
+"""The board guards itself: each limit by a segment just inside and one just outside."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import radians
+
+import numpy as np
+import pytest
+
+from deltaviz import load_robot
+from deltaviz.link.board.checks import Checks
+from deltaviz.link.board.kinematics import RotaryDeltaForward
+from deltaviz.link.configuration import configure_from
+from deltaviz.link.messages import BoardState, Refusal, Refused, StopCause, Stopped
+
+PRESETS = ["stm32", "trossen", "zheng2023", "deltadraw"]
+ACCELERATION = 50_000.0
+
+
+def reasons(messages):
+    return [(m.reason, m.joint) for m in messages if isinstance(m, Refused)]
+
+
+def test_accelerations_are_judged_at_both_ends(bench):
+    bench.arm()
+    # a0 = 6 p / h², a1 = -a0, from rest to rest in 10 ms
+    assert reasons(bench.segment([0.83, 100], [0, 0])) == []
+    assert reasons(bench.segment([0.83, 100.85], [0, 0])) == [(Refusal.ACCELERATION, 1)]
+    assert bench.board.state is BoardState.BRAKING
+
+
+@pytest.mark.parametrize(("speed", "accepted"), [(4000, True), (4010, False)])
+def test_velocity_at_the_knot(make_bench, make_configure, speed, accepted):
+    bench = make_bench(make_configure(joint_max=(9.0, 9.0)))
+    bench.speed_up(speed)
+    assert (bench.board.cause is not StopCause.BAD_SEGMENT) == accepted
+
+
+def test_velocity_between_the_knots(make_bench, make_configure):
+    bench = make_bench(make_configure(joint_max=(9.0, 9.0)))
+    bench.speed_up(3950)
+    p, _ = bench.coast
+    # The same speed at both ends, 1.5 (d / h - v) more in the middle.
+    messages = bench.segment([p + (3950 + 40) * 0.02, 100], [3950, 0], ms=20)
+    assert reasons(messages) == [(Refusal.VELOCITY, 0)]
+
+
+def test_joint_limits_at_the_knot(make_bench, make_configure):
+    bench = make_bench(make_configure(ready=(1.4985, 0.0), homing_switch=(-1.1, -1.1)))
+    bench.arm()
+    assert reasons(bench.segment([1499.9, 0], [0, 0], ms=50)) == []
+    assert reasons(bench.segment([1501.5, 0], [0, 0], ms=50)) == [(Refusal.JOINT_LIMIT, 0)]
+
+
+def test_joint_limits_between_the_knots(make_bench, make_configure):
+    """Out over the limit and back again within one segment."""
+    bench = make_bench(make_configure(ready=(1.49, 0.0)))
+    bench.arm()
+    assert reasons(bench.segment([1495, 0], [400, 0], ms=25)) == []
+    messages = bench.segment([1495, 0], [-400, 0], ms=40)  # 4 microsteps over in the middle
+    assert reasons(messages) == []
+    bench.segment([1490, 0], [0, 0], ms=25)
+    assert bench.board.state is BoardState.ARMED
+    bench.segment([1496.875, 0], [550, 0], ms=25)
+    assert bench.board.state is BoardState.ARMED
+    messages = bench.segment([1496.875, 0], [-550, 0], ms=50)  # 6.9 further
+    assert reasons(messages) == [(Refusal.JOINT_LIMIT, 0)]
+
+
+def test_every_knot_must_be_brakeable(make_bench, make_configure):
+    bench = make_bench(make_configure(joint_max=(0.15, 1.5)))
+    bench.speed_up(2000)  # the brake takes 40 microsteps
+    bench.go_on(1)
+    assert bench.board.cause is not StopCause.BAD_SEGMENT
+    bench.go_on(5)
+    assert (Refusal.BRAKE, 0) in reasons(bench.said)
+    bench.run_to_rest()
+    assert bench.board.counts[0] <= 151
+    assert bench.last(Stopped).cause is StopCause.BAD_SEGMENT
+
+
+def test_without_the_brakeability_check_the_limit_is_broken(
+    make_bench, make_configure, monkeypatch
+):
+    monkeypatch.setattr(Checks, "_joint_objection", lambda *_: None)
+    bench = make_bench(make_configure(joint_max=(0.1, 1.5)))
+    bench.speed_up(2000)
+    bench.go_on(6)
+    bench.run_to_rest()
+    assert bench.board.counts[0] > 101
+
+
+def test_outside_its_limits_it_accepts_only_the_way_in(bench):
+    checks = bench.board._core.robot.checks
+
+    def judge(p0, p1):
+        return checks.objection(
+            p0=(p0 * 1024, 0), v0=(0, 0), p1=(p1 * 1024, 0), v1=(0, 0), ticks=4000, homed=True
+        )
+
+    assert judge(1520, 1519) is None
+    assert judge(1520, 1521).reason is Refusal.JOINT_LIMIT
+    assert judge(-1020, -1019) is None
+    assert judge(-1020, -1021).reason is Refusal.JOINT_LIMIT
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_its_own_forward_kinematics_agrees_with_the_robots(name):
+    robot = load_robot(name)
+    configure = configure_from(robot)
+    forward = RotaryDeltaForward(dict(configure.geometry), configure.tool_offset)
+    rng = np.random.default_rng(3)
+    theta = rng.uniform(radians(-60), radians(110), (400, 3))
+    theirs = robot.forward(theta)
+    round_trip = robot.inverse(theirs)
+    reached = 0
+    for angles, tip, back in zip(theta, theirs, round_trip, strict=True):
+        ours = forward.tip(angles)
+        if ours is not None:
+            reached += 1
+            assert ours == pytest.approx(tuple(tip), abs=1e-9)
+        elif not np.isnan(tip).any():
+            # Refused although the forearms meet: an arm is past the edge of its reach.
+            assert np.isnan(back).any() or np.abs(back - angles).max() > 1e-6
+    assert reached > 300
+
+
+def test_unequal_arms_each_have_their_own_lengths():
+    geometry = {
+        "base_radius": (115.0, 117.0, 113.0),
+        "effector_radius": (75.0, 74.0, 76.0),
+        "upper_arm": (125.0, 126.0, 124.0),
+        "forearm": (338.0, 336.0, 340.0),
+        "azimuths": (0.0, 2.1, 4.2),
+    }
+    forward = RotaryDeltaForward(geometry, (0.0, 0.0, -10.0))
+    theta = (0.2, 0.5, 0.1)
+    x, y, z = forward.tip(theta)
+    for i in range(3):
+        out = (
+            geometry["base_radius"][i]
+            - geometry["effector_radius"][i]
+            + geometry["upper_arm"][i] * np.cos(theta[i])
+        )
+        elbow = (
+            out * np.cos(geometry["azimuths"][i]),
+            out * np.sin(geometry["azimuths"][i]),
+            -geometry["upper_arm"][i] * np.sin(theta[i]),
+        )
+        length = np.linalg.norm(np.subtract((x, y, z + 10.0), elbow))
+        assert length == pytest.approx(geometry["forearm"][i], abs=1e-9)
+
+
+@pytest.fixture
+def delta(make_bench):
+    """The default robot, homed; a move in joint space that leaves its workspace."""
+    robot = load_robot("stm32")
+    return make_bench(configure_from(robot)), robot
+
+
+def fall(bench, robot, ms=3000):
+    """Lowers the tip past the workspace's floor, within every joint's own limits."""
+    per_rad = np.array(robot.drive.microsteps_per_rad)
+    bench.arm()
+    speed, h = 1.0, 0.010  # rad/s
+    theta, velocity = np.array(robot.homing.ready), 0.0
+    for _ in range(ms // 10):
+        faster = min(speed, velocity + 20 * h)
+        theta = theta + (velocity + faster) / 2 * h
+        velocity = faster
+        bench.segment(tuple(theta * per_rad), tuple(velocity * per_rad))
+        if bench.index == 1:
+            continue  # one stays ahead
+        bench.run(10)
+        if bench.board.state is not BoardState.ARMED:
+            break
+    bench.run_to_rest()
+    return robot.forward(np.array(bench.board.counts) / per_rad)
+
+
+def test_it_brakes_before_it_leaves_the_workspace(delta):
+    bench, robot = delta
+    tip = fall(bench, robot)
+    assert {reason for reason, _ in reasons(bench.said)} <= {
+        Refusal.BRAKE,
+        Refusal.WORKSPACE,
+        Refusal.STATE,
+    }
+    assert bench.board.cause in (StopCause.BAD_SEGMENT, StopCause.UNDERRUN)
+    assert robot.workspace.z[0] - 0.5 <= tip[2] < robot.workspace.z[0] + 20
+
+
+def test_without_its_own_workspace_check_it_would_leave(delta, monkeypatch):
+    monkeypatch.setattr(Checks, "_workspace_objection", lambda *_: None)
+    bench, robot = delta
+    assert fall(bench, robot)[2] < robot.workspace.z[0] - 1
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"joint_min": (1.6, 0.0)},
+        {"velocity": (0.0, 1.0)},
+        {"velocity": (101.0, 1.0)},  # more than a step every other tick
+        {"velocity": (1.0,)},
+        {"acceleration": (float("nan"), 1.0)},
+        {"microsteps_per_rad": (float("inf"), 1.0)},
+        {"microsteps_per_rad": (1.0,) * 5},
+        {"ready": (2.0, 0.0)},
+        {"homing_direction": 0},
+        {"homing_fast": -1.0},
+        {"workspace_radius": 0.0},
+        {"kind": "rotary_delta", "geometry": (("upper_arm", (1.0, 1.0, 1.0)),)},
+    ],
+    ids=str,
+)
+def test_a_configuration_that_makes_no_sense_is_refused(make_configure, changes):
+    from deltaviz.link.board import SimulatedBoard
+
+    board = SimulatedBoard(start_homed=True)
+    board.receive(replace(make_configure(), **changes))
+    assert Refused("configure", Refusal.CONFIGURATION) in board.take()
+    assert board.state is BoardState.DISABLED
+
+
+def test_another_configuration_needs_a_disabled_board(bench, make_configure):
+    other = make_configure(joint_max=(1.4, 1.4))
+    assert Refused("configure", Refusal.STATE) in bench.send(other)
