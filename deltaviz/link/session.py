@@ -58,6 +58,7 @@ class Session:
         self._pending: dict[str, float] = {}  # command: when to give up
         self._settled = True  # telemetry has come since the last answer
         self._hello_next = now + HELLO_REPEAT
+        self._underrun_epoch: int | None = None
         self._stop_next: float | None = None
         self._stopping_epoch: int | None = None
         self._estop_next: float | None = None
@@ -315,7 +316,9 @@ class Session:
             return
         self._flight = None
         self.stopped = stopped
-        self.underruns += stopped.cause is m.StopCause.UNDERRUN
+        if stopped.cause is m.StopCause.UNDERRUN and stopped.epoch != self._underrun_epoch:
+            self._underrun_epoch = stopped.epoch  # the answer to our own stop tells it again
+            self.underruns += 1
 
     def _was_refused(self, refused: m.Refused) -> None:
         self._answered(refused.command)

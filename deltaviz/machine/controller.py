@@ -211,12 +211,15 @@ class Controller(Core):
         refused = self._control.refusal(client, at_rest=self.mode in AT_REST)
         if self._control.holder is not None and refused is not None:
             return i.Refused(i.RefusalKind.CONTROL, refused)
-        mode = self.mode
-        if mode is Mode.JOGGING and self._drive is not None and not self._drive.homed:
-            mode = Mode.UNHOMED  # single joints only, also on the way
-        if after(mode, event) is None:
-            return i.Refused(i.RefusalKind.MODE, refusal(mode, event))
+        for mode in self._rows():
+            if after(mode, event) is None:
+                return i.Refused(i.RefusalKind.MODE, refusal(mode, event))
         return None if refused is None else i.Refused(i.RefusalKind.CONTROL, refused)
+
+    def _rows(self) -> tuple[Mode, ...]:
+        """The modes that must all take an event: while an unhomed robot creeps, both its own."""
+        creeps = self.mode is Mode.JOGGING and self._drive is not None and not self._drive.homed
+        return (self.mode, Mode.UNHOMED) if creeps else (self.mode,)
 
     def _command(self, intent: Command, now: float) -> i.Answer:
         event = _EVENTS[type(intent)]

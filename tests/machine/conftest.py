@@ -144,8 +144,11 @@ class Bench:
         if self.board is None:
             return
         due = round(self.now * TICK_HZ)
+        homed = self.board.homed
         self.board.advance(due - self._ticks)
         self._ticks = due
+        if self.board.homed != homed:
+            self.path.clear()  # the counts were set anew, without a step
         if self.board.positions:
             self.path.append((self.now, tuple(p / 2**32 for p in self.board.positions)))
 
@@ -267,7 +270,7 @@ def slides(joints: int) -> Robot:
             ),
         ),
         drive=replace(base.drive, microsteps_per_rad=each(509.3), invert=each(False)),
-        homing=replace(base.homing, switch=each(-1.2), ready=each(0.0)),
+        homing=replace(base.homing, switch=each(-1.2), ready=each(0.0), fast=2.0, slow=0.5),
         kernel=kernel,
         margin_names=tuple(
             Margin(kind, arm)

@@ -1,0 +1,340 @@
+"""Things that break in the middle of a motion: the robot rests, within limits, with a reason,
+and nothing moves again until somebody presses again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from deltaviz.link import messages as m
+from deltaviz.link.board import SimulatedBoard
+from deltaviz.machine import intent as i
+from deltaviz.machine.core import Core
+from deltaviz.machine.jog_lease import LEASE, JogLease
+from deltaviz.machine.mode import Mode
+from deltaviz.machine.presses import Presses
+from deltaviz.machine.transitions import AT_REST
+
+ME, YOU = "me", "you"
+ACCEPTED = i.Accepted()
+FAST = (300.0, 0.0, 0.0)
+
+
+def drag_alive(bench: Any) -> None:
+    ms = bench.now * 1000
+    bench.do(i.DragAlive(ME, round(ms), ms, bench.now))
+
+
+def jogging(bench: Any) -> None:
+    bench.jog(FAST, 0.15)
+
+
+def stepping(bench: Any) -> None:
+    assert bench.do(i.StepPoint(ME, (80.0, 0.0, 0.0))) == ACCEPTED
+
+
+def dragging(bench: Any) -> None:
+    x, y, z = bench.snapshot.xyz
+    drag_alive(bench)
+    assert bench.do(i.DragStart(ME, bench.now)) == ACCEPTED
+    assert bench.do(i.DragTo(ME, (x + 80.0, y, z), bench.now)) == ACCEPTED
+
+
+def sliding(bench: Any) -> None:
+    assert bench.do(i.FollowAngles(ME, (0.6, 0.1, 0.1))) == ACCEPTED
+
+
+def moving(bench: Any) -> None:
+    x, y, z = bench.snapshot.xyz
+    assert bench.do(i.MoveToPoint(ME, (x + 80.0, y, z), 1.0)) == ACCEPTED
+
+
+def homing(bench: Any) -> None:
+    assert bench.do(i.Home(ME)) == ACCEPTED
+    bench.run(0.5)
+
+
+WAYS = [jogging, stepping, dragging, sliding, moving, homing]
+
+
+@pytest.fixture(params=WAYS, ids=lambda way: way.__name__)
+def in_motion(request: pytest.FixtureRequest, bench: Any) -> Any:
+    """A bench in the middle of each way of moving, for a page that has said it is here."""
+    bench.do(i.ClientHere(ME))
+    request.param(bench)
+    bench.run(0.1)
+    assert bench.board.moving
+    return bench
+
+
+def assert_rests(bench: Any, *, within: float) -> None:
+    bench.run_until(lambda: not bench.board.moving, within=within)
+    bench.check_limits()
+
+
+def assert_stays(bench: Any, seconds: float = 0.5) -> None:
+    bench.run(0.02)
+    rested = bench.now
+    bench.run(seconds)
+    assert not bench.path or bench.now - bench.path[-1][0] < 0.01
+    assert bench.distance_moved(rested) == 0
+
+
+def test_the_plug_is_pulled(in_motion: Any) -> None:
+    bench = in_motion
+    bench.cut = True
+    assert_rests(bench, within=0.45)  # the lease, and the brake
+    bench.run(1.2)
+    assert bench.mode is Mode.OFFLINE
+    assert "connect" in str(bench.snapshot.link.problem)
+    assert bench.snapshot.xyz is None
+    bench.reconnect_same_board()
+    bench.run(0.1)
+    assert bench.mode in (Mode.IDLE, Mode.UNHOMED)
+    assert_stays(bench)
+    if bench.mode is Mode.IDLE:  # the board never lost its counts
+        bench.jog((-30.0, 0.0, 0.0), 0.2, press="fresh")
+        assert bench.board.moving
+        epochs = [x.epoch for x in bench.sent if isinstance(x, m.Arm)]
+        assert len(set(epochs)) == len(epochs), "no epoch twice"
+
+
+def test_what_was_sent_before_the_plug_was_pulled_never_runs_twice(bench: Any) -> None:
+    """The old session's bytes come out of the cable after the new session has begun."""
+    jogging(bench)
+    bench.cut = True
+    seen = len(bench.sent)
+    bench.hold(FAST, 0.14)
+    late = bench.sent[seen:]
+    bench.run(1.5)
+    bench.reconnect_same_board()
+    bench.run(0.1)
+    rested = bench.now
+    for message in late:
+        bench.board.receive(message)
+    bench.run(0.3)
+    assert bench.distance_moved(rested) == 0
+
+
+def test_the_page_in_control_is_gone(in_motion: Any) -> None:
+    bench = in_motion
+    bench.do(i.ClientGone(ME))
+    assert_rests(bench, within=0.3)
+    bench.run(0.05)
+    assert bench.mode in AT_REST
+    assert "page" in str(bench.snapshot.stop_reason)
+    assert bench.snapshot.holder is None
+    assert_stays(bench)
+
+
+def test_a_watching_page_that_goes_changes_nothing(in_motion: Any) -> None:
+    bench = in_motion
+    mode = bench.mode
+    bench.do(i.ClientHere(YOU))
+    bench.do(i.ClientGone(YOU))
+    bench.run(0.002)
+    assert bench.mode is mode
+    assert bench.snapshot.holder == ME
+
+
+def test_a_stop_from_another_page(in_motion: Any) -> None:
+    bench = in_motion
+    bench.do(i.Stop(YOU, "Stop pressed"))
+    assert_rests(bench, within=0.3)
+    bench.run(0.02)
+    assert bench.mode in AT_REST
+    assert bench.snapshot.stop_reason == "Stop pressed"
+    x, y, z = bench.snapshot.xyz or (0.0, 0.0, -300.0)
+    drag_alive(bench)
+    assert isinstance(bench.beat(FAST), i.Refused)
+    assert isinstance(bench.do(i.DragTo(ME, (x + 5, y, z), bench.now)), i.Refused)
+    assert_stays(bench)
+
+
+def test_an_estop_takes_the_drivers_off_at_once(in_motion: Any) -> None:
+    bench = in_motion
+    bench.do(i.EStop(YOU, "E-stop pressed"))
+    bench.run(0.004)
+    assert not bench.board.moving
+    bench.run(0.02)
+    assert bench.mode is Mode.ESTOP
+
+
+@pytest.mark.parametrize("lost", [1, 3, 8])
+def test_a_stop_is_repeated_until_it_is_answered(bench: Any, lost: int) -> None:
+    jogging(bench)
+    bench.cut = True
+    bench.do(i.Stop(ME, "Stop pressed"))
+    bench.run(0.010 * lost - 0.004)
+    bench.cut = False
+    bench.run(0.012)
+    assert bench.board.state in (m.BoardState.BRAKING, m.BoardState.HALTED)
+    bench.run_to_rest()
+    assert bench.mode is Mode.IDLE
+    stops = sum(isinstance(x, m.Stop) for x in bench.sent)
+    bench.run(0.1)
+    assert stops == sum(isinstance(x, m.Stop) for x in bench.sent), "then it is quiet"
+
+
+def test_a_page_that_falls_silent_mid_jog_slows_the_robot_within_250_ms(bench: Any) -> None:
+    bench.jog((100.0, 0.0, 0.0), 0.4)
+    bench.beat((100.0, 0.0, 0.0))
+    last = bench.now
+    bench.run(LEASE - 0.004)
+    assert bench.mode is Mode.JOGGING, "one tick before"
+    bench.run(0.006)
+    assert bench.mode is Mode.STOPPING, "one tick after"
+    bench.run_until(lambda: bench.board.state is m.BoardState.BRAKING, within=0.05)
+    assert bench.now - last < 0.250
+    bench.run_to_rest()
+    assert "sign of life" in str(bench.snapshot.stop_reason)
+    assert_stays(bench)
+
+
+def test_a_burst_of_held_up_beats_revives_nothing(bench: Any) -> None:
+    bench.jog((100.0, 0.0, 0.0), 0.4)
+    sent = bench.now
+    bench.run_to_rest()
+    rested = bench.now
+    for k in range(20):
+        ms = (sent + 0.05 * k) * 1000
+        answer = bench.do(i.JogBeat(ME, "p", round(ms), ms, (100.0, 0.0, 0.0), bench.now))
+        assert isinstance(answer, i.Refused)
+    late = i.JogStart(ME, "p", i.JogFrame.BASE, (100.0, 0.0, 0.0), bench.now)
+    assert isinstance(bench.do(late), i.Refused), "an ended id never lives again"
+    bench.run(0.3)
+    assert bench.distance_moved(rested) == 0
+
+
+def test_a_burst_in_the_middle_of_a_jog_does_not_prolong_it(bench: Any) -> None:
+    """Beats sent 50 ms apart, all delivered 190 ms after the first: the last counts, as sent."""
+    bench.jog((100.0, 0.0, 0.0), 0.4)
+    bench.beat((100.0, 0.0, 0.0))
+    sent = bench.now
+    bench.run(0.190)
+    for k in range(1, 4):
+        ms = (sent + 0.001 * k) * 1000
+        bench.do(i.JogBeat(ME, "p", round(ms) + k, ms, (100.0, 0.0, 0.0), bench.now))
+    bench.run(0.018)
+    assert bench.mode is Mode.STOPPING
+
+
+def test_a_drag_whose_page_falls_silent_brakes(bench: Any) -> None:
+    dragging(bench)
+    bench.run(0.1)
+    drag_alive(bench)
+    last = bench.now
+    x, y, z = bench.snapshot.xyz
+
+    def pull() -> None:  # the scene still sends, the console does not
+        bench.do(i.DragTo(ME, (x + 60, y, z), bench.now))
+
+    bench.run(LEASE - 0.004, each=pull)
+    assert bench.mode is Mode.JOGGING
+    bench.run(0.006, each=pull)
+    assert bench.mode is Mode.STOPPING
+    assert bench.now - last < 0.250
+    bench.run(0.3, each=pull)
+    assert bench.mode is Mode.IDLE
+    assert "drag" in str(bench.snapshot.stop_reason)
+
+
+def test_a_slider_pulled_through_a_stop_does_not_resume(bench: Any) -> None:
+    target = 0.0
+
+    def pull() -> None:
+        nonlocal target
+        target += 0.001
+        bench.do(i.FollowAngles(ME, (target, 0.0, 0.0)))
+
+    bench.run(0.3, each=pull)
+    bench.do(i.Stop(YOU, "Stop pressed"))
+    bench.run(0.3, each=pull)
+    rested = bench.now
+    bench.run(0.7, each=pull)
+    assert bench.mode is Mode.IDLE
+    assert bench.distance_moved(rested) == 0
+    bench.run(0.5)
+    assert bench.do(i.FollowAngles(ME, (target, 0.0, 0.0))) == ACCEPTED
+
+
+def test_a_board_that_brakes_by_itself_says_why(bench: Any) -> None:
+    """The host stalls for longer than the horizon: the board runs out and brakes."""
+    moving(bench)
+    bench.run(0.08)
+    for _ in range(60):
+        bench.now += 0.002
+        bench._advance_board()
+    bench.run_to_rest()
+    assert bench.mode is Mode.IDLE
+    assert "slow" in str(bench.snapshot.stop_reason)
+    assert bench.snapshot.underruns == 1
+    assert_stays(bench)
+    bench.check_limits()
+
+
+def test_a_board_that_restarts_is_not_believed_to_be_homed(bench: Any) -> None:
+    jogging(bench)
+    bench.board = SimulatedBoard(boot=9)
+    bench.run(0.1)
+    assert bench.mode is Mode.OFFLINE
+    assert "restarted" in str(bench.snapshot.link.problem)
+    assert not bench.snapshot.homed
+
+
+def test_a_segment_that_the_board_refuses_stops_with_its_words(bench: Any) -> None:
+    """The board judges for itself: here the host's guard and limits are of another robot."""
+    jogging(bench)
+    bench.board.receive(
+        m.Segment(
+            epoch=bench.segments()[-1].epoch,
+            index=(bench.segments()[-1].index + 1) & 0xFFFF,
+            t_end=(bench.segments()[-1].t_end + 2000) & 0xFFFF_FFFF,
+            duration=2000,
+            seen=bench.board.now,
+            p=(10**9,) * 3,
+            v=(0,) * 3,
+        )
+    )
+    bench.run(0.01)
+    bench.run_to_rest()
+    assert bench.mode is Mode.IDLE
+    assert str(bench.snapshot.stop_reason).startswith("The board refused a motion")
+    bench.check_limits()
+
+
+# The same tests with a check taken out must fail: they do see what they claim to see.
+
+
+@pytest.mark.parametrize(
+    ("owner", "name", "without", "test"),
+    [
+        (
+            JogLease,
+            "expired",
+            lambda *_: False,
+            test_a_page_that_falls_silent_mid_jog_slows_the_robot_within_250_ms,
+        ),
+        (
+            Presses,
+            "admits_value",
+            lambda *_: True,
+            test_a_slider_pulled_through_a_stop_does_not_resume,
+        ),
+        (Core, "_watch_presses", lambda *_: None, test_a_drag_whose_page_falls_silent_brakes),
+    ],
+)
+def test_the_tests_notice_a_missing_check(
+    bench: Any,
+    monkeypatch: pytest.MonkeyPatch,
+    owner: type,
+    name: str,
+    without: Callable[..., Any],
+    test: Callable[[Any], None],
+) -> None:
+    monkeypatch.setattr(owner, name, without)
+    with pytest.raises(AssertionError):
+        test(bench)
