@@ -213,7 +213,8 @@ class Live:
     def socket(self, cookie: str | None = None, **options: Any) -> ClientConnection:
         headers = {} if cookie is None else {"Cookie": cookie}
         address = f"ws://127.0.0.1:{self.port}/ws"
-        return connect(address, additional_headers=headers, compression=None, **options)
+        options = {"compression": None, "close_timeout": 0.5} | options  # tests leave states unread
+        return connect(address, additional_headers=headers, **options)
 
     def close(self) -> None:
         self._server.should_exit = True
