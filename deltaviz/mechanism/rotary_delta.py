@@ -12,12 +12,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from deltaviz.mechanism.arm import EPS, Arm
-from deltaviz.mechanism.arrays import Array, rows
+from deltaviz.mechanism.arrays import Array, in_blocks, rows
 from deltaviz.mechanism.bounds import Bounds
 from deltaviz.mechanism.geometry import GeometryError, per_arm
 from deltaviz.mechanism.kernel import Kernel
 from deltaviz.mechanism.margin import Margin, MarginKind
 from deltaviz.mechanism.stiffness import TYPE_1_RESERVE, TYPE_2_RESERVE, stiffness, unit
+from deltaviz.mechanism.vectors import cross, cross_rows, dot, minus
 
 MEET_ROUNDING = 16 * EPS  # of P's squared height over three elbows at right angles, in l²
 UNDETERMINED = 1e-12  # elbow centres whose triangle is smaller than this, in squared forearms
@@ -117,9 +118,7 @@ class RotaryDelta:
         A row is NaN where any arm cannot reach. At the very edge of reach, where rounding
         decides, the edge's own angle is returned; it is determined only to about 3e-8 rad.
         """
-        theta = self._angles(rows(xyz, 3, "xyz"), clamp=False)
-        theta[np.isnan(theta).any(axis=-1)] = np.nan
-        return theta
+        return in_blocks(self._solve, rows(xyz, 3, "xyz"))
 
     def nearest_angles(self, xyz: ArrayLike) -> Array:
         """As `inverse`, but an arm that cannot reach gets the angle that comes nearest."""
@@ -133,7 +132,7 @@ class RotaryDelta:
         solutions the working one (det Jx < 0 with arms counter-clockwise: below the elbows).
         A row is NaN where the forearms cannot meet, or would meet in more than two points.
         """
-        return self._meet(self.elbows(theta))
+        return in_blocks(lambda block: self._meet(self.elbows(block)), rows(theta, 3, "theta"))
 
     @np.errstate(all="ignore")
     def jacobian(self, theta: ArrayLike) -> Array:
@@ -143,7 +142,7 @@ class RotaryDelta:
         elbows = self.elbows(angles)
         forearms = self._meet(elbows)[..., None, :] - elbows
         jq = self._jq(forearms, angles)
-        adjugate = _cross_rows(forearms)
+        adjugate = cross_rows(forearms)
         det = (forearms[..., 0, :] * adjugate[..., 0, :]).sum(axis=-1)
         det = np.where(det == 0.0, np.nan, det)
         return np.swapaxes(adjugate * (jq / det[..., None])[..., None], -1, -2)
@@ -169,7 +168,7 @@ class RotaryDelta:
         """(...) mm³: determinant of the forearm vectors, 0 at type 2 singularities, negative
         in the working assembly of arms that stand counter-clockwise."""
         forearms = rows(xyz, 3, "xyz")[..., None, :] - self.elbows(theta)
-        return (forearms[..., 0, :] * _cross_rows(forearms)[..., 0, :]).sum(axis=-1)
+        return (forearms[..., 0, :] * cross_rows(forearms)[..., 0, :]).sum(axis=-1)
 
     def couples(self, xyz: ArrayLike, theta: ArrayLike) -> Array:
         """(..., 3, 3): t_i x S_i/|S_i|, the moments by which the parallelograms hold the
@@ -242,6 +241,11 @@ class RotaryDelta:
         """mm per unit of stiffness where the forearms lie flat: l/√3."""
         return sum(self.forearm) / 3 / math.sqrt(3)
 
+    def _solve(self, points: Array) -> Array:
+        theta = self._angles(points, clamp=False)
+        theta += theta.sum(axis=-1, keepdims=True) * 0.0  # one NaN makes the row NaN
+        return theta
+
     @np.errstate(all="ignore")
     def _angles(self, points: Array, *, clamp: bool) -> Array:
         x, y, z = points[..., 0], points[..., 1], points[..., 2]
@@ -251,20 +255,24 @@ class RotaryDelta:
         return theta
 
     def _meet(self, elbows: Array) -> Array:
-        first = elbows[..., 0, :]
-        a = elbows[..., 1, :] - first
-        b = elbows[..., 2, :] - first
-        n = np.cross(a, b)
-        square = _dot(n, n)
+        one, two, three = (
+            (elbows[..., i, 0], elbows[..., i, 1], elbows[..., i, 2]) for i in range(3)
+        )
+        a, b = minus(two, one), minus(three, one)
+        n = cross(a, b)
+        square = dot(n, n)
         l1, l2, l3 = (fore * fore for fore in self.forearm)
-        along_a = (_dot(a, a) + (l1 - l2)) / 2
-        along_b = (_dot(b, b) + (l1 - l3)) / 2
-        w = (along_a * np.cross(b, n) + along_b * np.cross(n, a)) / square
-        height = l1 - _dot(w, w)
-        edge = MEET_ROUNDING * l1 * _dot(a, a) * _dot(b, b) / square
+        a_square, b_square = dot(a, a), dot(b, b)
+        along_a = (a_square + (l1 - l2)) / (2 * square)
+        along_b = (b_square + (l1 - l3)) / (2 * square)
+        across_b, across_a = cross(b, n), cross(n, a)
+        w = tuple(along_a * p + along_b * q for p, q in zip(across_b, across_a, strict=True))
+        height = l1 - dot(w, w)
+        edge = MEET_ROUNDING * l1 * a_square * b_square / square
         height = np.where((height < 0) & (height >= -edge), 0.0, height)
         height = np.where(square > (UNDETERMINED * l1) ** 2, height, np.nan)
-        return first + w - n * (self.handedness * np.sqrt(height / square))
+        h = self.handedness * np.sqrt(height / square)
+        return np.stack([d + u - v * h for d, u, v in zip(one, w, n, strict=True)], axis=-1)
 
     def _jq(self, forearms: Array, theta: Array) -> Array:
         out = np.empty(np.broadcast_shapes(forearms.shape[:-1], theta.shape))
@@ -291,14 +299,3 @@ class RotaryDelta:
                         list(self.azimuths_deg),
                         "must be three directions at least 1° apart",
                     )
-
-
-def _dot(a: Array, b: Array) -> Array:
-    return (a * b).sum(axis=-1, keepdims=True)
-
-
-def _cross_rows(matrix: Array) -> Array:
-    """(..., 3, 3) to the cross products of its rows: 2 x 3, 3 x 1, 1 x 2."""
-    one, two, three = matrix[..., 0, :], matrix[..., 1, :], matrix[..., 2, :]
-    pairs = (np.cross(two, three), np.cross(three, one), np.cross(one, two))
-    return np.stack(pairs, axis=-2)
