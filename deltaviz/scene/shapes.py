@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from deltaviz.scene.rotations import matrix
 from deltaviz.scene.units import Array
 
-SEGMENTS = 48
+SEGMENTS = 36
 
 
 @dataclass(frozen=True)
@@ -77,8 +77,9 @@ def cylinder(radius: float, z_from: float, z_to: float, *, bevel: float = 0.0) -
 
 
 def sphere(radius: float) -> Shape:
-    angles = np.linspace(-math.pi / 2, math.pi / 2, 17)
-    return lathe([(radius * math.cos(a), radius * math.sin(a)) for a in angles], smooth=True)
+    angles = np.linspace(-math.pi / 2, math.pi / 2, 11)
+    profile = [(radius * math.cos(a), radius * math.sin(a)) for a in angles]
+    return lathe(profile, smooth=True, segments=20)
 
 
 def beam(length: float, root: tuple[float, float], tip: tuple[float, float]) -> Shape:

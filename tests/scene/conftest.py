@@ -156,11 +156,11 @@ class Stand:
 
         asyncio.run_coroutine_threadsafe(frames(), self.server.get_event_loop()).result(60.0)
 
-    def eventually(self, holds: Callable[[], Any], within: float = 20.0) -> Any:
+    def eventually(self, holds: Callable[[], Any], within: float = 60.0) -> Any:
         return eventually(holds, within)
 
 
-def eventually(holds: Callable[[], Any], within: float = 20.0) -> Any:
+def eventually(holds: Callable[[], Any], within: float = 60.0) -> Any:
     """Wait for something to become true, and say what it became."""
     deadline = time.monotonic() + within
     while not (value := holds()):

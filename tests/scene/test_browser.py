@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import threading
 from collections.abc import Iterator
@@ -17,12 +18,13 @@ from deltaviz.scene.drag import eye_of
 
 pytestmark = [pytest.mark.browser, pytest.mark.xdist_group("scene-browser")]
 
-PANEL = 288
+PATIENCE = 90_000  # ms; a software renderer on a busy machine
 
 
 @pytest.fixture
 def context(chromium: Browser, stand: Any) -> Iterator[BrowserContext]:
-    context = chromium.new_context(viewport={"width": 936, "height": 752})
+    context = chromium.new_context(viewport={"width": 740, "height": 520})
+    context.set_default_timeout(PATIENCE)
     context.add_cookies([{"name": "session", "value": "anna", "url": stand.url}])
     yield context
     context.close()
@@ -36,7 +38,7 @@ def page(context: BrowserContext, stand: Any) -> Page:
     page.get_by_text("Angles").wait_for()
     stand.eventually(lambda: stand.server.get_clients())
     page.wait_for_function(
-        "() => [...document.querySelectorAll('canvas')].some(c => c.clientWidth < 700)"
+        "() => [...document.querySelectorAll('canvas')].some(c => c.clientWidth < 600)"
     )
     at_rest(page, stand)
     return page
@@ -52,9 +54,9 @@ def at_rest(page: Page, stand: Any) -> None:
 
     def fits() -> bool:
         page.wait_for_timeout(50)
-        canvas = picture(page)
-        camera = the_client(stand).camera
-        return abs(camera.aspect - canvas["width"] / canvas["height"]) < 0.01
+        canvas, camera = picture(page), the_client(stand).camera
+        framed = np.allclose(camera.position, stand.server.initial_camera.position, atol=1e-3)
+        return framed and abs(camera.aspect - canvas["width"] / canvas["height"]) < 0.01
 
     stand.eventually(fits)
 
@@ -63,8 +65,9 @@ def picture(page: Page) -> dict[str, float]:
     """The canvas that shows the robot."""
     return page.evaluate(
         """() => {
-            const all = [...document.querySelectorAll('canvas')].map(c => c.getBoundingClientRect());
-            const r = all.sort((a, b) => b.width * b.height - a.width * a.height)[0];
+            const all = [...document.querySelectorAll('canvas')];
+            const areas = all.map(c => c.getBoundingClientRect());
+            const r = areas.sort((a, b) => b.width * b.height - a.width * a.height)[0];
             return {x: r.x, y: r.y, width: r.width, height: r.height};
         }"""
     )
@@ -88,24 +91,28 @@ def test_what_was_grabbed_stays_under_the_pointer(page: Page, stand: Any, shift:
     for target in (stand.scene._model.effector, handle):
         target.on_drag("left", modifier="shift" if shift else None)(record)
     x, y = on_screen(page, stand, stand.machine.snapshot.xyz)
-    dx, dy = (0.0, -40.0) if shift else (70.0, 25.0)
+    dx, dy = (0.0, -30.0) if shift else (50.0, 15.0)
     if shift:
         page.keyboard.down("Shift")
     page.mouse.move(x, y)
     page.mouse.down()
-    page.mouse.move(x + dx, y + dy, steps=12)
+    page.mouse.move(x + dx, y + dy, steps=6)
     stand.eventually(lambda: stand.machine.of(DragTo))
-    page.wait_for_timeout(400)  # the picture follows the robot, which is at its target
-    page.mouse.move(x + dx + 1, y + dy)
-    page.wait_for_timeout(200)
+    size = np.array((picture(page)["width"], picture(page)["height"]))
+    jitter = itertools.cycle((1, 0))
+
+    def miss() -> float:
+        """How far from the pointer (px) the picture shows the place that was grabbed."""
+        page.mouse.move(x + dx + next(jitter), y + dy)
+        page.wait_for_timeout(100)
+        apart = np.subtract(seen[-1].start_screen_pos, seen[-1].end_screen_pos)
+        return float(np.abs(apart * size).max())
+
+    stand.eventually(lambda: miss() <= 3.0)
     page.mouse.up()
     if shift:
         page.keyboard.up("Shift")
     stand.eventually(lambda: stand.machine.of(DragEnd))
-    size = np.array((picture(page)["width"], picture(page)["height"]))
-    end = next(event for event in reversed(seen) if event.phase == "end")
-    miss = (np.array(end.start_screen_pos) - np.array(end.end_screen_pos)) * size
-    assert np.abs(miss).max() <= 3.0
     start, last = stand.machine.of(DragStart), stand.machine.of(DragTo)[-1]
     assert [intent.client for intent in start] == ["anna"]
     moved = np.subtract(last.xyz, (0.0, 0.0, sum(stand.machine.robot.workspace.z) / 2))
@@ -129,7 +136,7 @@ def test_a_slider_posts_angles_and_the_others_follow(page: Page, stand: Any) -> 
     assert float(box.nth(5).input_value()) == pytest.approx(stand.machine.snapshot.xyz[2], abs=0.2)
 
 
-def test_escape_from_a_lost_pointer_ends_the_drag(page: Page, stand: Any) -> None:
+def test_a_browser_that_goes_ends_its_drag(page: Page, stand: Any) -> None:
     x, y = on_screen(page, stand, stand.machine.snapshot.xyz)
     page.mouse.move(x, y)
     page.mouse.down()
