@@ -88,8 +88,10 @@ class Checker:
         reached = kernel.forward(points)
         sampled = count * (1 + BRAKE_POINTS)
         back = kernel.inverse(reached[:sampled])
-        if not same_branch(back, points):
+        if not same_branch(back[:count], points):
             return Verdict(Fault.PATH, -1, *peaks, 0.0, 0.0)
+        if not same_branch(back[count:], points[count:]):
+            return Verdict(Fault.BRAKE, -1, *peaks, 0.0, 0.0)
         margins = kernel.margins(
             np.concatenate((xyz, reached[:sampled])), np.concatenate((theta, points[:sampled]))
         )
@@ -99,7 +101,7 @@ class Checker:
             np.concatenate((theta, points[sampled:], theta[:-1], theta[1:])),
             np.concatenate((rate, rate, rate, first, last)),
         )
-        speed, thrust = tip_peaks(tip, count, TANGENT_STEP)
+        speed, thrust = tip_peaks(tip, count, duration, TANGENT_STEP)
         return Verdict(
             Fault(fault),
             column,

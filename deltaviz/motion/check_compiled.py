@@ -133,28 +133,37 @@ def first_bad_brake(margins: Array, between: float) -> int:
 
 
 @compiled
-def tip_peaks(tip: Array, count: int, step: float) -> tuple[float, float]:
+def tip_peaks(tip: Array, count: int, duration: float, step: float) -> tuple[float, float]:
     """The tip's largest speed and acceleration (norms).
 
     Rows: velocities at the K+1 knots, ahead of them, behind them; then the end accelerations of
-    the K cubics mapped by the Jacobian, at their first and last knots.
+    the K cubics mapped by the Jacobian, at their first and last knots. Where the speed rises at
+    the one end of a segment and falls at the other, it has its peak between.
     """
     rows = count + 1
     axes = tip.shape[1]
-    speed = 0.0
-    thrust = 0.0
-    for k in range(rows):
-        square = 0.0
-        for i in range(axes):
-            square += tip[k, i] * tip[k, i]
-        speed = max(speed, square)
+    fastest = 0.0
+    hardest = 0.0
+    speed = np.zeros(2)
+    slope = np.zeros(2)
     for k in range(count):
         for end in range(2):
-            square = 0.0
             knot = k + end
+            thrust = 0.0
+            square = 0.0
+            along = 0.0
             for i in range(axes):
                 bent = (tip[rows + knot, i] - tip[2 * rows + knot, i]) / (2 * step)
-                value = tip[3 * rows + end * count + k, i] + bent
-                square += value * value
-            thrust = max(thrust, square)
-    return np.sqrt(speed), np.sqrt(thrust)
+                push = tip[3 * rows + end * count + k, i] + bent
+                thrust += push * push
+                square += tip[knot, i] * tip[knot, i]
+                along += push * tip[knot, i]
+            hardest = max(hardest, thrust)
+            speed[end] = np.sqrt(square)
+            slope[end] = along / speed[end] if square > 0.0 else 0.0
+            fastest = max(fastest, speed[end])
+        if slope[0] > 0.0 and slope[1] < 0.0:
+            half = 0.5 * duration / (slope[0] - slope[1])
+            for end in range(2):
+                fastest = max(fastest, speed[end] + slope[end] * slope[end] * half)
+    return fastest, np.sqrt(hardest)

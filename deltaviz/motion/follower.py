@@ -334,7 +334,7 @@ def _values(goal: Goal) -> tuple[float, ...]:
 
 
 def _inside(robot: Followed, space: JointSpace) -> Array:
-    """The pose furthest from all limits, of those with all joints at equal shares of their ranges."""
+    """The pose furthest from all limits, of those with all joints at one share of their range."""
     low = np.asarray(robot.joints.min, dtype=float)
     high = np.asarray(robot.joints.max, dtype=float)
     poses = low + (high - low) * np.linspace(0.02, 0.98, 49)[:, None]

@@ -10,7 +10,6 @@ import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -125,18 +124,21 @@ class Delta:
 
 @dataclass
 class Ride:
-    """What was executed: the knots, and which segments were commanded (not braked)."""
+    """What was executed: the knots, and which segments were commanded (not braked).
 
-    robot: Robot
+    `tip` tells that only the tip's motion was asked for: then the plan's jerk is limited too.
+    """
+
     start: Array
     knots: list[Knot] = field(default_factory=list)
     commanded: list[bool] = field(default_factory=list)
+    tip: bool = True
     switches: int = 0
 
 
 @dataclass
 class Finding:
-    """Each broken limit with the worst excess, and the peaks as shares of the limits."""
+    """Each broken limit with the worst excess; the commanded peaks as shares of the limits."""
 
     broken: dict[str, float]
     peaks: dict[str, float]
@@ -163,19 +165,25 @@ class Judge:
         tip, velocity, acceleration = self.delta.motion(poses, rates, turns)
         speed = np.linalg.norm(velocity, axis=-1)[commanded]
         thrust = np.linalg.norm(acceleration, axis=-1)[commanded]
-        peaks = {
-            "joint velocity": float(np.abs(rates).max() / self.rate),
-            "joint acceleration": float(np.abs(turns).max() / self.turn),
+        asked = {
+            "joint velocity": float(np.abs(rates[commanded]).max(initial=0) / self.rate),
+            "joint acceleration": float(np.abs(turns[commanded]).max(initial=0) / self.turn),
             "tip velocity": float(speed.max(initial=0) / self.speed),
             "tip acceleration": float(thrust.max(initial=0) / self.thrust),
-            "tip jerk": self._jerk(tip[:, -1], time[:, 0], commanded),
         }
-        broken = {k: v - 1 for k, v in peaks.items() if not v <= 1 + ROUNDING}
+        jerk = self._jerk(tip[:, -1], time[:, 0], commanded) if ride.tip else 0.0
+        run = {
+            **asked,
+            "brake velocity": float(np.abs(rates).max() / self.rate),
+            "brake acceleration": float(np.abs(turns).max() / self.turn),
+            "tip jerk": jerk,
+        }
+        broken = {k: v - 1 for k, v in run.items() if not v <= 1 + ROUNDING}
         self._place(broken, "", poses.reshape(-1, poses.shape[-1]))
         self._place(broken, "brake: ", self._brakes(theta, rate))
         if rate[-1].any():
             broken["at rest"] = 1.0
-        return Finding(broken, peaks)
+        return Finding(broken, asked)
 
     def _place(self, broken: dict[str, float], what: str, poses: Array) -> None:
         for name, excess in self.delta.broken(poses).items():
@@ -252,27 +260,69 @@ def random_goal(robot: Robot, delta: Delta, rng: np.random.Generator, mode: str)
             return Rest()
 
 
+def sprints(robot: Robot, delta: Delta, rng: np.random.Generator) -> list[Goal]:
+    """Moves on which a joint comes to its velocity limit, then to its acceleration limit.
+
+    A joint turns at S·v/jq: fastest where jq is least, for a tip that moves along the forearm S.
+    """
+    joints, limits = delta.file["joints"], delta.file["limits"]["cartesian"]
+    low, high = np.radians(joints["min_deg"]), np.radians(joints["max_deg"])
+    theta = rng.uniform(low, high, size=(6000, 3))
+    tip = delta.tip(theta)
+    rods = tip[:, None, :] - delta.elbows(theta)
+    lever = (rods * delta.turning(theta)[0]).sum(-1)
+    arm = lever.argmin(-1)
+    along = rods[np.arange(len(theta)), arm] / delta.fore
+    run = 0.7 * limits["velocity"] ** 2 / limits["acceleration"]
+    run += 0.5 * limits["velocity"] * limits["acceleration"] / limits["jerk"]
+    goals: list[Goal] = []
+    for reach in ((-1, 0, 1), (-0.25, 0, 1), (-0.5, 0, 1), (1, 0, -0.5), (0, 0.3, 0.6)):
+        ends = tip[:, None, :] + along[:, None, :] * (run * np.array(reach))[:, None]
+        flat = np.ascontiguousarray(ends.reshape(-1, 3))
+        margins = robot.kernel.margins(flat, robot.kernel.inverse(flat))
+        fine = np.isfinite(tip).all(-1) & (margins.min(-1).reshape(-1, 3) > 1.0).all(-1)
+        order = np.flatnonzero(fine)[np.argsort(lever.min(-1)[fine])]
+        if not len(order):
+            continue
+        pick = ends[order[int(rng.integers(min(3, len(order))))]]
+        goals += [ToPoint(tuple(pick[0].tolist())), ToPoint(tuple(pick[2].tolist()))]
+    return goals
+
+
 def ride(
     name: str, *, seed: int, mode: str, ticks: int, hold: tuple[int, int] = (2, 60),
     clock: Callable[[], float] = lambda: 0.0, budget: float = 1.0,
+    prepare: Callable[[Follower], None] = lambda follower: None,
 ) -> Ride:  # fmt: skip
-    """Random targets, each held for a random number of ticks; at the end the brake, to rest."""
+    """Targets each held for a random number of ticks; at the end the brake, to rest.
+
+    Mode "sprint" drives at the joints' limits, the others are `random_goal`'s. `prepare` gets
+    the follower before it starts.
+    """
     robot = load_robot(name)
     delta = Delta(name)
     rng = np.random.default_rng(seed)
     follower = Follower(robot, robot.homing.ready, clock=clock, budget=budget)
-    done = Ride(robot, np.array(robot.homing.ready))
+    prepare(follower)
+    done = Ride(
+        np.array(robot.homing.ready), tip=mode in ("inside", "edge", "far", "jog", "sprint")
+    )
+    planned = sprints(robot, delta, rng) if mode == "sprint" else []
     goal: Goal = Rest()
     left = 0
     override = 1.0
     for _ in range(ticks):
         if left == 0:
-            goal = random_goal(robot, delta, rng, mode)
-            left = int(rng.integers(*hold))
+            goal = planned.pop(0) if planned else random_goal(robot, delta, rng, mode)
+            left = 120 if mode == "sprint" else int(rng.integers(*hold))
             override = float(rng.choice([1.0, 1.0, 1.5, 0.6, 0.0])) if mode == "mixed" else 1.0
             done.switches += 1
         left -= 1
         _advance(done, follower, goal, override)
+        if mode == "sprint" and follower.resting and not planned:
+            break
+        if mode == "sprint" and follower.resting:
+            left = 0
     for _ in range(200):
         if follower.resting:
             break
@@ -287,9 +337,10 @@ def _advance(done: Ride, follower: Follower, goal: Goal, override: float) -> Non
 
 @pytest.fixture(scope="session")
 def judge() -> Callable[[str], Judge]:
+    """`judge(preset)` gives a judge of rides of that preset."""
     return Judge
 
 
 @pytest.fixture(scope="session")
-def take_ride() -> Callable[..., Any]:
+def take_ride() -> Callable[..., Ride]:
     return ride
