@@ -12,6 +12,9 @@ import { chooseMessage } from "./message.js";
 /** @type {Readonly<Record<Step, string>>} */
 const LABELS = { connect: "Set-up", enable: "Enable", home: "Home", reset: "Reset" };
 
+/** Characters beyond which a text is set smaller, so that it fits. */
+const LONG = 80;
+
 export class MessageBox {
   #box = byId("message", HTMLElement);
   #text = byId("message-text", HTMLElement);
@@ -31,6 +34,7 @@ export class MessageBox {
       const told = chooseMessage({ state, connected, stale, notice: notices.current });
       setText(this.#text, told.text);
       this.#box.dataset["tone"] = told.tone;
+      this.#box.toggleAttribute("data-long", told.text.length > LONG);
       this.#step = told.step;
       this.#button.hidden = told.step === null || state?.control.holder === "another";
       if (told.step !== null) setText(this.#button, LABELS[told.step]);

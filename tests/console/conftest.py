@@ -173,8 +173,11 @@ class Machine:
 
     ports: Any = {"ports": [{"id": "sim", "description": "Simulated board"}]}  # noqa: RUF012
 
-    async def _scene(self, _request: Request) -> Response:
+    async def scene(self, _request: Request) -> Response:
         return HTMLResponse(SCENE)
+
+    async def _scene(self, request: Request) -> Response:
+        return await self.scene(request)
 
 
 async def _with_policy(app: Any, scope: Any, receive: Any, send: Any) -> None:
@@ -270,9 +273,8 @@ def open_page(
         page.on("console", lambda m: errors.append(m.text) if "Content Security" in m.text else None)
         page.goto(url + "/")
         page.wait_for_selector("#pad button")
-        page.wait_for_function("document.querySelector('#override-text').textContent !== ''")
-        page.wait_for_function("!document.querySelector('#control').disabled")
-        page.wait_for_function("document.querySelectorAll('#sliders input').length > 0")
+        until(lambda: page.evaluate("!document.querySelector('#control').disabled"))
+        page.wait_for_selector("#sliders input", state="attached")
         page.frame_locator("#scene").locator("body").wait_for()
         return page
 

@@ -75,7 +75,7 @@ def test_the_present_pose_fills_the_fields_once(page: Page, machine: Any) -> Non
     values = [page.locator(f"#move-{axis}").input_value() for axis in "xyz"]
     assert values == ["12.40", "−3.15", "−301.02"]
     machine.set(xyz_mm=[50.0, 50.0, -250.0])
-    page.get_by_text("50.00").first.wait_for()
+    page.locator("#readouts").get_by_text("50.00").first.wait_for()
     assert page.locator("#move-x").input_value() == "12.40"
 
 
@@ -115,7 +115,7 @@ def test_a_held_slider_is_not_written(
     page.mouse.down()
     held = slider.input_value()
     machine.set(command_xyz_mm=[-100.0, 0.0, -300.0], xyz_mm=[-100.0, 0.0, -300.0])
-    page.get_by_text("−100.00").first.wait_for()
+    page.locator("#strip").get_by_text("−100.00").wait_for()
     assert slider.input_value() == held
     assert machine.posted("move") == []
     page.mouse.up()

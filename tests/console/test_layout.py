@@ -88,7 +88,7 @@ def test_a_browser_set_to_large_type_hides_nothing(
     page = open_page(*size)
     session = page.context.new_cdp_session(page)
     session.send("Page.setFontSizes", {"fontSizes": {"standard": 32}})
-    page.wait_for_function("getComputedStyle(document.documentElement).fontSize === '32px'")
+    assert page.evaluate("getComputedStyle(document.documentElement).fontSize") == "32px"
     for control in ("#stop", "#estop"):
         assert page.locator(control).is_visible()
     assert page.evaluate(COVERED) == []
