@@ -50,8 +50,17 @@ _jit: Any = numba.njit  # pyright: ignore  (numba has no types)
 
 
 def _compiled(function: Callable[_P, _R]) -> Callable[_P, _R]:
-    """Compiled at its first call and cached; a division by zero gives inf or NaN, as in numpy."""
-    return _jit(cache=not function.__name__.startswith("_"), error_model="numpy")(function)
+    """Compiled at its first call; a division by zero gives inf or NaN, as in numpy.
+
+    The batch functions are cached, in the package's folder or else in the user's; where neither
+    can be written they are compiled anew by each process.
+    """
+    if not function.__name__.startswith("_"):
+        try:
+            return _jit(cache=True, error_model="numpy")(function)
+        except RuntimeError:  # numba found no folder for its cache
+            pass
+    return _jit(error_model="numpy")(function)
 
 
 @_compiled
