@@ -8,8 +8,7 @@ from pathlib import Path
 
 from fastapi import FastAPI, Request, Response
 from fastapi.exceptions import RequestValidationError
-from fastapi.responses import FileResponse, HTMLResponse, JSONResponse, PlainTextResponse
-from fastapi.staticfiles import StaticFiles
+from fastapi.responses import HTMLResponse, JSONResponse, PlainTextResponse
 from starlette.exceptions import HTTPException as StarletteHTTPException
 
 from deltaviz.machine.port import MachinePort
@@ -22,11 +21,13 @@ from deltaviz.web.scene_port import ScenePort
 from deltaviz.web.session import Sessions
 from deltaviz.web.shield import Shield
 from deltaviz.web.socket import Pages
+from deltaviz.web.static_files import StaticFiles
 
 _DESCRIPTION = (
     "Lengths in mm, angles in degrees. Calls that move the robot answer 409 with the reason when "
     "another holds control or the mode does not allow it, and 422 when a value is malformed or "
-    "breaks a limit. Stop and E-stop are taken from anyone, always."
+    "breaks a limit. Stop and E-stop are taken from anyone, always. Live state and jogging go "
+    "over the websocket /ws: JSON both ways, and every message has a type."
 )
 
 
@@ -61,7 +62,7 @@ def create_app(
     app.include_router(scene.router(session_of=sessions.of, holds_control=holds_control))
     app.add_api_websocket_route("/ws", pages.serve)
     _add_docs(app)
-    _add_console(app, sessions=sessions, static_dir=static_dir)
+    _add_console(app, sessions=sessions, files=StaticFiles(static_dir))
 
     app.add_exception_handler(RequestValidationError, _malformed)
     app.add_exception_handler(StarletteHTTPException, _failed)
@@ -81,17 +82,18 @@ def _add_docs(app: FastAPI) -> None:
         return PlainTextResponse(docs.STYLE, media_type="text/css")
 
 
-def _add_console(app: FastAPI, *, sessions: Sessions, static_dir: Path) -> None:
-    @app.api_route("/", methods=["GET", "HEAD"], include_in_schema=False)
+def _add_console(app: FastAPI, *, sessions: Sessions, files: StaticFiles) -> None:
     async def console(request: Request) -> Response:
         if _comes_from_elsewhere(request):
             return HTMLResponse(_BOUNCE)
-        response = FileResponse(static_dir / "index.html")
+        response = files.answer(request, "/index.html")
         sessions.welcome(request, response)
         return response
 
+    for path in ("/", "/index.html"):
+        app.add_api_route(path, console, methods=["GET", "HEAD"], include_in_schema=False)
     # Not mounted: a mount at "/" would answer 404 where a call with another method is 405.
-    app.router.default = StaticFiles(directory=static_dir)
+    app.router.default = files
 
 
 # A page opened by a link of another site comes without its SameSite=Strict cookie; a new

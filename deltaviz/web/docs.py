@@ -43,6 +43,7 @@ def page(api: Schema, *, base: str) -> str:
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <title>{title}</title>
 <link rel="stylesheet" href="/docs/style.css">
+<link rel="icon" href="/favicon.svg">
 </head>
 <body>
 <h1>{title}</h1>

@@ -152,6 +152,8 @@ def static(tmp_path: Path) -> Path:
     folder.mkdir()
     (folder / "index.html").write_text("<!doctype html><title>console</title>")
     (folder / "main.js").write_text("export {};")
+    (folder / "notes.txt").write_text("secret")
+    (folder / ".hidden").write_text("secret")
     (tmp_path / "secret.txt").write_text("secret")
     return folder
 

@@ -157,16 +157,35 @@ def test_a_link_from_another_site_does_not_replace_the_session(client: TestClien
         "/secret.txt%00.js",
         "/%00",
         "/" + "a" * 5000,
-        "/link.txt",
+        "/notes.txt",
+        "/.hidden",
     ],
 )
-def test_nothing_outside_the_console_s_folder_is_served(
-    client: TestClient, static: Path, path: str
-) -> None:
-    (static / "link.txt").symlink_to(static.parent / "secret.txt")
+def test_nothing_outside_the_console_s_folder_is_served(client: TestClient, path: str) -> None:
     answer = client.get(path)
     assert answer.status_code == 404
     assert "secret" not in answer.text.replace("secret.txt", "")
+
+
+def test_files_have_the_types_that_browsers_need(client: TestClient) -> None:
+    assert client.get("/").headers["content-type"].startswith("text/html")
+    assert client.get("/main.js").headers["content-type"].startswith("text/javascript")
+
+
+def test_a_file_is_sent_again_only_when_it_changed(client: TestClient, static: Path) -> None:
+    tag = client.get("/main.js").headers["etag"]
+    again = client.get("/main.js", headers={"if-none-match": tag})
+    assert (again.status_code, again.content) == (304, b"")
+    (static / "main.js").write_text("export const changed = true;")
+    assert "changed" in client.get("/main.js", headers={"if-none-match": tag}).text
+    (static / "main.js").unlink()
+    assert client.get("/main.js").status_code == 404
+
+
+def test_head_tells_the_size_and_sends_nothing(client: TestClient) -> None:
+    head, get = client.head("/main.js"), client.get("/main.js")
+    assert head.headers["content-length"] == get.headers["content-length"]
+    assert head.content == b""
 
 
 FOREIGN = re.compile(
