@@ -49,15 +49,20 @@ def parameters_from(configure: Configure, *, tick_hz: int) -> Parameters | None:
         )
 
     joints = len(per_rad)
+    forward = (
+        RotaryDeltaForward(dict(configure.geometry), configure.tool_offset)
+        if configure.geometry
+        else None
+    )
+    if forward is not None and forward.tip(configure.ready) is None:
+        return None
     return Parameters(
         configure=configure,
         joints=joints,
         accelerations=tuple(
             int(a * m * A_UNIT) for a, m in zip(configure.acceleration, per_rad, strict=True)
         ),
-        forward=RotaryDeltaForward(dict(configure.geometry), configure.tool_offset)
-        if configure.geometry
-        else None,
+        forward=forward,
         fast=speeds(configure.homing_fast),
         slow=speeds(configure.homing_slow),
         backoff=microsteps([configure.homing_backoff] * joints),

@@ -215,7 +215,8 @@ def bench(tick: int) -> Bench:
 @pytest.fixture
 def make_bench(tick: int) -> Callable[..., Bench]:
     def make(configure: Configure | None = None, **options: Any) -> Bench:
-        return Bench(configure or gantry(), **({"now": tick} | options))
+        options.setdefault("now", tick)
+        return Bench(configure or gantry(), **options)
 
     return make
 

@@ -136,7 +136,9 @@ def test_unequal_arms_each_have_their_own_lengths():
     }
     forward = RotaryDeltaForward(geometry, (0.0, 0.0, -10.0))
     theta = (0.2, 0.5, 0.1)
-    x, y, z = forward.tip(theta)
+    tip = forward.tip(theta)
+    assert tip is not None
+    x, y, z = tip
     for i in range(3):
         out = (
             geometry["base_radius"][i]
