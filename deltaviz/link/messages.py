@@ -2,7 +2,7 @@
 
 Ticks are the board's step ticks and wrap at 2^32; epochs and indices wrap at 2^16. Positions are
 in 2^-10 microsteps, velocities in 2^-16 microsteps per millisecond, counts in microsteps; each
-has one entry per joint. A count is the integer part (floor) of the position. Once homed, joint
+has one entry per joint. A count is the whole number nearest to the position. Once homed, joint
 angle = count / microsteps_per_rad; before that, counts begin at 0 where the board was switched on.
 
 What the board answers: `Refused(command, reason)` or `Done(command)` to Enable, Arm, Reset, Tool
@@ -305,7 +305,5 @@ class Stopped:
     counts: tuple[int, ...]
 
 
-HostMessage = (
-    Hello | Configure | Enable | Home | Arm | Segment | Keep | Stop | EStop | Reset | Tool
-)
+HostMessage = Hello | Configure | Enable | Home | Arm | Segment | Keep | Stop | EStop | Reset | Tool
 BoardMessage = HelloReply | Configured | Refused | Done | Telemetry | Stopped

@@ -18,6 +18,7 @@ from deltaviz.link.pickles import PickleSocket
 from deltaviz.link.rules import TELEMETRY_MS, TICK_HZ
 
 MOST_AT_ONCE = TICK_HZ // 50  # 20 ms
+AT_ONCE = TICK_HZ // 1000  # 1 ms: a board hears its host while it moves, also when it catches up
 
 
 class Pace:
@@ -48,12 +49,16 @@ def run(board: SimulatedBoard, host: PickleSocket) -> None:
     poller = select.poll()
     poller.register(host, select.POLLIN)
     while True:
-        messages = host.receive()
-        board.advance(pace.due(time.monotonic()))
-        for message in messages:
-            board.receive(message)
-        for answer in board.take():
-            host.send(answer)
+        due = pace.due(time.monotonic())
+        while True:
+            for message in host.receive():
+                board.receive(message)
+            board.advance(min(due, AT_ONCE))
+            for answer in board.take():
+                host.send(answer)
+            due -= AT_ONCE
+            if due <= 0:
+                break
         if host.ended is None and os.getppid() == parent:
             poller.poll(TELEMETRY_MS)
         elif board.moving:

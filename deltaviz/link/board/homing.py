@@ -12,6 +12,7 @@ from math import isqrt
 
 from deltaviz.link.board.parameters import Parameters
 from deltaviz.link.board.paths import Cubic, Path, Ramp
+from deltaviz.link.board.stepper import nearest
 from deltaviz.link.messages import Fault
 
 
@@ -128,7 +129,7 @@ class Homing:
     def referenced(self, positions: Sequence[int]) -> list[int]:
         """What the positions are, now that the switches' angles are known; in whole microsteps."""
         return [
-            (switch + (position >> 32) - (joint.trigger >> 32)) << 32
+            (switch + nearest(position) - nearest(joint.trigger)) << 32
             for position, joint, switch in zip(
                 positions, self._joints, self._parameters.switch, strict=True
             )

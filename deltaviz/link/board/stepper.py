@@ -1,16 +1,24 @@
 """The lower tier: positions that advance evenly from tick to tick, and the counts they give.
 
-The real board adds an increment each tick and steps when the integer part changes; here the
-position after k ticks is the same sum, so no tick need be visited.
+The real board adds an increment each tick and steps when the nearest whole number changes; here
+the position after k ticks is the same sum, so no tick need be visited. (The nearest, not the
+integer part: truncated, the arms would stand half a microstep off on average.)
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
+HALF = 1 << 31
+
+
+def nearest(position: int) -> int:
+    """The whole microsteps of a position in Q32; halves go up."""
+    return (position + HALF) >> 32
+
 
 class Stepper:
-    """Positions in Q32; `counts` are their integer parts (floor)."""
+    """Positions in Q32; `counts` are the whole numbers nearest to them."""
 
     def __init__(self, joints: int) -> None:
         self._from = [0] * joints
@@ -33,7 +41,7 @@ class Stepper:
     @property
     def counts(self) -> tuple[int, ...]:
         positions = self._to if self._elapsed == self._ticks else self.positions
-        return tuple([position >> 32 for position in positions])
+        return tuple([nearest(position) for position in positions])
 
     def place(self, positions: Sequence[int]) -> None:
         """Says where it is, without a step."""

@@ -94,7 +94,7 @@ def test_a_piece_is_the_same_however_time_is_cut(start, change, ticks, cuts):
             position += increment
         passed += cut
         if passed < ticks:
-            assert stepper.counts == (position >> 32,)
+            assert stepper.counts == ((2 * position + 2**32) // 2**33,)
     stepper.advance(stepper.remaining)
     assert stepper.positions == [start + change]
 
@@ -171,7 +171,7 @@ def test_every_millisecond_the_count_is_the_cubics_integer_part(make_configure, 
             board.advance(200 - part)
             for joint in range(joints):
                 here = exact(p0[joint], p1[joint], v0[joint], v1[joint], ms * 200, passed * 200)
-                assert board.counts[joint] in (floor(here - NEAR), floor(here + NEAR))
+                assert board.counts[joint] in (floor(here - NEAR + 0.5), floor(here + NEAR + 0.5))
                 assert abs(board.counts[joint] - before[joint]) <= 4  # 3 a ms, and a fraction
         last = p1, v1
     assert board.state is BoardState.BRAKING
