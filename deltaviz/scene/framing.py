@@ -12,7 +12,7 @@ from deltaviz.scene.units import Array
 FIELD_OF_VIEW = math.radians(35.0)
 _AZIMUTH = math.radians(-62.0)  # where the camera stands, seen from above
 _ELEVATION = math.radians(16.0)
-_MARGIN = 1.06
+_MARGIN = 1.08
 
 
 @dataclass(frozen=True)
@@ -30,8 +30,8 @@ def frame(*, reach: float, depth: tuple[float, float]) -> Framing:
     `depth` (low, high); metres."""
     low, high = depth
     top, floor = 0.22 * reach, low - 0.12 * (high - low) - 0.05 * reach
-    centre = np.array((0.0, 0.0, (top + floor) / 2))
-    radius = math.hypot(0.86 * reach, (top - floor) / 2)
+    centre = np.array((0.0, 0.0, (top + low) / 2))
+    radius = math.hypot(0.86 * reach, (top - low) / 2)
     distance = _MARGIN * radius / math.sin(FIELD_OF_VIEW / 2)
     away = np.array(
         (

@@ -29,7 +29,11 @@ class Stage:
         scene.configure_default_lights(cast_shadow=False)
         scene.configure_environment_map(None)
         scene.add_light_hemisphere(
-            "/light/sky", sky_color=(235, 242, 255), ground_color=(96, 92, 88), intensity=1.5
+            "/light/sky", sky_color=(235, 242, 255), ground_color=(150, 146, 142), intensity=1.6
+        )
+        # From beside the camera's first place: the sun above leaves upright parts dark.
+        scene.add_light_directional(
+            "/light/front", color=(255, 250, 242), intensity=1.3, position=(0.9, -0.9, 0.35)
         )
         for layer in LAYERS:
             scene.add_frame(layer, show_axes=False)
