@@ -23,10 +23,15 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 STATIC = Path(__file__).parents[2] / "static"
 CHROMIUM = "/usr/bin/chromium"
-CHROMIUM_ARGS = (
-    "--no-sandbox --use-angle=swiftshader --enable-unsafe-swiftshader --ignore-gpu-blocklist"
-    " --disable-background-networking --disable-component-update --disable-sync"
-).split()
+CHROMIUM_ARGS = [
+    "--no-sandbox",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--ignore-gpu-blocklist",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+]
 CSP = (
     "default-src 'self'; script-src 'self'; style-src 'self'; img-src 'self' data:;"
     " connect-src 'self'; frame-src 'self'; frame-ancestors 'none'; base-uri 'none';"
@@ -66,6 +71,7 @@ READY: dict[str, Any] = {
     "board_time_s": 1.0,
     "underruns": 0,
 }
+PORTS = {"ports": [{"id": "sim", "description": "Simulated board"}]}
 ROBOT: dict[str, Any] = {
     "name": "stm32",
     "joints": 3,
@@ -86,6 +92,8 @@ ROBOT: dict[str, Any] = {
 class Machine:
     """The server's side of the page: sends the state given, keeps what the page says."""
 
+    loop: asyncio.AbstractEventLoop
+
     def __init__(self) -> None:
         self.lock = threading.Lock()
         self.reset()
@@ -102,10 +110,11 @@ class Machine:
         with self.lock:
             self.state = json.loads(json.dumps(READY))
             self.robot = json.loads(json.dumps(ROBOT))
-            self.heard: list[tuple[float, dict[str, Any]]] = []
+            self.heard: list[dict[str, Any]] = []
             self.posts: list[tuple[str, Any]] = []
             self.refusals: dict[str, tuple[int, str]] = {}
-            self.accepts = True
+            self.accepts = True  # sockets
+            self.obeys = True  # jogs when told to
             self.silent = False
 
     def set(self, **fields: Any) -> None:
@@ -114,7 +123,7 @@ class Machine:
 
     def messages(self, *types: str) -> list[dict[str, Any]]:
         with self.lock:
-            return [m for _, m in self.heard if not types or m["type"] in types]
+            return [m for m in self.heard if not types or m["type"] in types]
 
     def posted(self, path: str) -> list[Any]:
         with self.lock:
@@ -146,12 +155,20 @@ class Machine:
             while True:
                 message = await socket.receive_json()
                 with self.lock:
-                    self.heard.append((time.monotonic(), message))
+                    self.heard.append(message)
+                    self._obey(message["type"])
         except (WebSocketDisconnect, RuntimeError):
             pass
         finally:
             self.sockets.discard(socket)
             sender.cancel()
+
+    def _obey(self, kind: str) -> None:
+        mode = self.state["mode"]
+        if self.obeys and kind == "jog_start" and mode in ("idle", "unhomed"):
+            self.state["mode"] = "jogging"
+        elif kind == "jog_end" and mode == "jogging":
+            self.state["mode"] = "idle" if self.state["homed"] else "unhomed"
 
     async def _send_states(self, socket: WebSocket) -> None:
         while True:
@@ -164,14 +181,12 @@ class Machine:
     async def _api(self, request: Request) -> Response:
         path = request.path_params["path"]
         if request.method == "GET":
-            return JSONResponse({"robot": self.robot, "ports": self.ports, "state": self.state}[path])
+            return JSONResponse({"robot": self.robot, "ports": PORTS}[path])
         body = await request.body()
         with self.lock:
             self.posts.append((path, json.loads(body) if body else None))
             status, detail = self.refusals.get(path, (202, ""))
         return JSONResponse({"detail": detail}, status)
-
-    ports: Any = {"ports": [{"id": "sim", "description": "Simulated board"}]}  # noqa: RUF012
 
     async def scene(self, _request: Request) -> Response:
         return HTMLResponse(SCENE)
@@ -265,12 +280,16 @@ def open_page(
     pages: list[Page] = []
     errors: list[str] = []
 
+    def keep_violation(text: str) -> None:
+        if "Content Security" in text:
+            errors.append(text)
+
     def open_(width: int = 1280, height: int = 800, **options: Any) -> Page:
         page = context(**options).new_page()
         page.set_viewport_size({"width": width, "height": height})
         pages.append(page)
         page.on("pageerror", lambda error: errors.append(str(error)))
-        page.on("console", lambda m: errors.append(m.text) if "Content Security" in m.text else None)
+        page.on("console", lambda message: keep_violation(message.text))
         page.goto(url + "/")
         page.wait_for_selector("#pad button")
         until(lambda: page.evaluate("!document.querySelector('#control').disabled"))

@@ -27,7 +27,11 @@ def test_axe_finds_nothing(
     machine.set(**STATES[state])
     page = open_page(*size, color_scheme=theme, reduced_motion="reduce")
     page.wait_for_timeout(100)
-    tabs = ["#setup-toggle"] if size[0] > 720 else [".tabs [data-view=pose]", ".tabs [data-view=setup]"]
+    tabs = (
+        ["#setup-toggle"]
+        if size[0] > 720
+        else [".tabs [data-view=pose]", ".tabs [data-view=setup]"]
+    )
     for click in [None, *tabs]:
         if click is not None:
             page.locator(click).click()

@@ -15,11 +15,19 @@ import pytest
 from websockets.sync.client import ClientConnection, connect
 
 CHROMIUM = "/usr/bin/chromium"
-ARGS = (
-    "--headless=new --no-sandbox --no-first-run --use-angle=swiftshader"
-    " --enable-unsafe-swiftshader --ignore-gpu-blocklist --disable-background-networking"
-    " --disable-component-update --disable-sync --window-size=1280,900 --remote-debugging-port=0"
-).split()
+ARGS = [
+    "--headless=new",
+    "--no-sandbox",
+    "--no-first-run",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--ignore-gpu-blocklist",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--window-size=1280,900",
+    "--remote-debugging-port=0",
+]
 
 pytestmark = pytest.mark.browser
 

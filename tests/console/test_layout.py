@@ -26,7 +26,7 @@ COVERED = """() => {
     const x = box.x + box.width / 2, y = box.y + box.height / 2;
     const hit = document.elementFromPoint(x, y);
     if (!control.contains(hit))
-      found.push(`${control.outerHTML.slice(0, 80)} at ${x},${y} under ${hit?.outerHTML.slice(0, 60)}`);
+      found.push(`${control.outerHTML.slice(0, 80)} under ${hit?.outerHTML.slice(0, 60)}`);
     if (box.x < 0 || box.right > innerWidth + 0.5)
       found.push(`${control.outerHTML.slice(0, 80)} leaves the page`);
   }

@@ -21,7 +21,7 @@ from websockets.typing import Subprotocol
 
 pytestmark = pytest.mark.browser
 
-INDEX = Path(viser.__file__).parent / "client/build/index.html"
+INDEX = Path(str(viser.__file__)).parent / "client/build/index.html"
 
 
 @pytest.fixture
