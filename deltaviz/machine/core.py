@@ -17,6 +17,7 @@ from deltaviz.machine.activity import Activity, Kind
 from deltaviz.machine.board_watch import lost, reported
 from deltaviz.machine.control_lease import ControlLease
 from deltaviz.machine.drive import Drive, FollowerMaker, make_follower
+from deltaviz.machine.horizon import Horizon
 from deltaviz.machine.mode import Mode
 from deltaviz.machine.picture import Speedometer, finite
 from deltaviz.machine.picture import reported as reported_pose
@@ -80,6 +81,7 @@ class Core:
         self._control = ControlLease()
         self._presses = Presses()
         self._speeds = Speedometer(robot)
+        self._horizon = Horizon()
         self._stop_reason: str | None = None
         self._override = 1.0
         self._underruns = 0
@@ -152,6 +154,7 @@ class Core:
         """One turn of the control loop: the messages to send, in order. Makes one knot at most;
         `hungry` tells whether the next tick is due at once."""
         session = self._session
+        self._horizon.turn(now, moving=self.mode in MOVING)
         if session is not None:
             session.tick(now)
             self._watch_board(session, now)
@@ -167,7 +170,9 @@ class Core:
         return out
 
     def hungry(self, now: float) -> bool:
-        return self._drive is not None and self.mode in MOVING and self._drive.hungry(now)
+        if self._drive is None or self.mode not in MOVING:
+            return False
+        return self._drive.hungry(now, horizon=self._horizon.seconds)
 
     @property
     def at_rest(self) -> bool:
@@ -237,7 +242,7 @@ class Core:
         if drive is None or activity is None or self.mode not in _FOLLOWS:
             return
         goal = Rest() if self.mode is Mode.PAUSED else activity.goal
-        refused = drive.pull(goal, override=self._override, now=now)
+        refused = drive.pull(goal, override=self._override, horizon=self._horizon.seconds, now=now)
         if refused is not None:
             self.stop(f"The guard refused {refused}.", now)
         elif self.mode is not Mode.PAUSED and not activity.held and session.standing:

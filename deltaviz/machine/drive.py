@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Protocol, cast
+from typing import Protocol, cast
 
 from deltaviz.link.session import Session
 from deltaviz.machine.creep import Creep
@@ -14,10 +14,6 @@ from deltaviz.motion.held import Held
 from deltaviz.motion.knot import Knot
 from deltaviz.robots import Robot
 
-if TYPE_CHECKING:
-    from deltaviz.motion.followed import Followed
-
-HORIZON = 0.060  # s of motion on the board, at most
 PERIOD = 0.010  # s of board time in one knot
 
 
@@ -46,8 +42,7 @@ FollowerMaker = Callable[[Robot, Sequence[float]], Follows]
 
 
 def make_follower(robot: Robot, theta: Sequence[float]) -> Follows:
-    # Checkers do not see a cached property as the property that a protocol asks for.
-    follower = Follower(cast("Followed", robot), theta, period=PERIOD)
+    follower = Follower(robot, theta, period=PERIOD)
     return cast("Follows", follower)  # its arrays are sequences of floats
 
 
@@ -87,8 +82,9 @@ class Drive:
         self._retry = float("-inf")
         session.begin()  # last, as what comes before takes time, and an arming must be fresh
 
-    def pull(self, goal: Goal, *, override: float, now: float) -> str | None:
-        """Send one knot towards `goal`, if one is due. What the guard refused, or None.
+    def pull(self, goal: Goal, *, override: float, horizon: float, now: float) -> str | None:
+        """Send one knot towards `goal`, if the board has less than `horizon` (s) left to run.
+        What the guard refused, or None.
 
         At rest nothing is queued, so that the next motion starts at once.
         """
@@ -97,7 +93,7 @@ class Drive:
             self.still = 0
         elif self.still and now < self._retry:
             return None
-        if not self._session.wants_knot(now, horizon=HORIZON):
+        if not self._session.wants_knot(now, horizon=horizon):
             return None
         before = tuple(self.follower.theta)
         knot = self.follower.step(goal, override=override)
@@ -111,6 +107,6 @@ class Drive:
             self._session.segment(knot, now)
         return refusal
 
-    def hungry(self, now: float) -> bool:
+    def hungry(self, now: float, *, horizon: float) -> bool:
         """Whether another knot is due at once."""
-        return not self.still and self._session.wants_knot(now, horizon=HORIZON)
+        return not self.still and self._session.wants_knot(now, horizon=horizon)

@@ -227,8 +227,6 @@ def load(source: str) -> Robot:
 def main() -> int:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the parent's to act on
     stops, talk = (socket.socket(fileno=int(argument)) for argument in sys.argv[1:3])
-    with contextlib.suppress(OSError, AttributeError):  # not everywhere, nor to everyone
-        os.setpriority(os.PRIO_PROCESS, 0, NICE)
     reader = FrameReader(talk)
     setup = _read_setup(talk, reader)
     process = None
@@ -237,6 +235,7 @@ def main() -> int:
         signal.signal(signal.SIGTERM, partial(_tell_to_end, process))
         gc.collect()
         gc.freeze()
+        _come_first()
         process.run()
     except Exception as error:
         traceback.print_exc()
@@ -244,6 +243,14 @@ def main() -> int:
             process.tell_failure(f"{type(error).__name__}: {error}")
         return 1
     return 0
+
+
+def _come_first() -> None:
+    """Run before what is merely busy, where that is allowed; after all compiling is done."""
+    with contextlib.suppress(OSError, AttributeError):  # not everywhere, nor to everyone
+        os.setpriority(os.PRIO_PROCESS, 0, NICE)
+    with contextlib.suppress(OSError, AttributeError):
+        os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(1))
 
 
 def _tell_to_end(process: Process, *_: object) -> None:

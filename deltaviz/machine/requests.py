@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -15,9 +14,6 @@ from deltaviz.machine.transitions import Event
 from deltaviz.motion.goal import AtJointVelocity, AtVelocity, Goal, ToAngles, ToPoint
 from deltaviz.motion.straight import check_straight
 from deltaviz.robots import Robot
-
-if TYPE_CHECKING:
-    from deltaviz.motion.followed import Followed
 
 MotionIntent = (
     i.JogStart
@@ -127,7 +123,7 @@ def _to_point(xyz: tuple[float, ...], speed: float, robot: Robot, pose: Pose) ->
     reach = robot.reach(xyz)
     if not reach.legal:
         raise BadValue(str(reach))
-    on_the_way = check_straight(cast("Followed", robot), pose.xyz, xyz)
+    on_the_way = check_straight(robot, pose.xyz, xyz)
     if on_the_way is not None:
         raise BadValue(f"{on_the_way}.")
     return ToPoint(xyz, speed=speed, slide=False)

@@ -94,11 +94,11 @@ def test_a_bad_knot_is_refused_with_its_reason(stm32: Robot, what: str) -> None:
     assert BAD[what] in str(guard.refusal(spoiled(knots[-1], what)))
 
 
-def creep_to(robot: Robot, target: Sequence[float]) -> str | None:
+def creep_to(robot: Robot, target_deg: Sequence[float]) -> str | None:
     """Slow straight joint motion from the ready pose, which no speed limit objects to."""
     start = np.array(robot.homing.ready)
     guard = Guard(robot, robot.homing.ready, homed=True)
-    way = np.array(target) - start
+    way = np.radians(target_deg) - start
     seconds = float(np.abs(way).max()) / 0.5
     count = round(seconds / PERIOD)
     for k in range(1, count + 1):
@@ -112,7 +112,7 @@ def creep_to(robot: Robot, target: Sequence[float]) -> str | None:
 
 
 def test_a_legal_way_passes(stm32: Robot) -> None:
-    assert creep_to(stm32, np.radians([20, 20, 20])) is None
+    assert creep_to(stm32, [20, 20, 20]) is None
 
 
 @pytest.mark.parametrize(
@@ -126,7 +126,7 @@ def test_a_legal_way_passes(stm32: Robot) -> None:
 def test_a_way_out_of_the_limits_is_refused(
     stm32: Robot, target: tuple[float, ...], limit: str
 ) -> None:
-    refused = creep_to(stm32, np.radians(target))
+    refused = creep_to(stm32, target)
     assert refused is not None
     assert re.search(limit, refused)
 
@@ -187,7 +187,7 @@ def test_without_a_check_the_bad_knot_would_pass(
     """Each check is needed: remove it, and what it catches goes through."""
     monkeypatch.setattr(Guard, check, lambda *_: None)
     if what == "out of the workspace":
-        assert creep_to(stm32, np.radians([-50, -50, -50])) is None
+        assert creep_to(stm32, [-50, -50, -50]) is None
         return
     guard = Guard(stm32, stm32.homing.ready, homed=homed)
     knot = spoiled(Knot(PERIOD, stm32.homing.ready, (0.0,) * 3), what)

@@ -140,7 +140,7 @@ def test_the_simulated_board_starts_idle_at_the_ready_pose(bench: Any) -> None:
 
 
 def test_from_switched_on_to_idle(make_bench: Callable[..., Any]) -> None:
-    bench = make_bench(homed=False)
+    bench: Any = make_bench(homed=False)
     steps = [bench.snapshot.next_step]
     assert bench.mode is Mode.DISABLED
     assert bench.snapshot.xyz is None
