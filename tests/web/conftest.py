@@ -70,7 +70,10 @@ class FakeMachine:
 
     def __init__(self, robot: Robot) -> None:
         self.robot = robot
-        self.snapshot = snapshot_of(robot)
+        self.reset()
+
+    def reset(self) -> None:
+        self.snapshot = snapshot_of(self.robot)
         self.told: list[Any] = []
         self.answer: Answer | Exception | None = Accepted()  # None: it never answers
 
@@ -136,9 +139,21 @@ def robot() -> Robot:
     return load_robot("stm32")
 
 
-@pytest.fixture
-def machine(robot: Robot) -> FakeMachine:
+@pytest.fixture(scope="session")
+def the_machine(robot: Robot) -> FakeMachine:
     return FakeMachine(robot)
+
+
+@pytest.fixture(scope="session")
+def the_app(the_machine: FakeMachine, static: Path) -> FastAPI:
+    """One application for many tests: building it takes longer than most of them."""
+    return _app(the_machine, FakeScene(), static)
+
+
+@pytest.fixture
+def machine(the_machine: FakeMachine) -> FakeMachine:
+    the_machine.reset()
+    return the_machine
 
 
 @pytest.fixture
@@ -146,41 +161,42 @@ def scene() -> FakeScene:
     return FakeScene()
 
 
-@pytest.fixture
-def static(tmp_path: Path) -> Path:
-    folder = tmp_path / "static"
+@pytest.fixture(scope="session")
+def static(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("web") / "static"
     folder.mkdir()
     (folder / "index.html").write_text("<!doctype html><title>console</title>")
     (folder / "main.js").write_text("export {};")
     (folder / "notes.txt").write_text("secret")
     (folder / ".hidden").write_text("secret")
-    (tmp_path / "secret.txt").write_text("secret")
+    (folder.parent / "secret.txt").write_text("secret")
     return folder
 
 
+def _app(machine: FakeMachine, scene: FakeScene, static: Path, port: int = PORT) -> FastAPI:
+    return create_app(
+        machine=machine,
+        scene=scene,
+        allowed_hosts=allowed_hosts("127.0.0.1", port),
+        port=port,
+        static_dir=static,
+    )
+
+
 @pytest.fixture
-def make_app(machine: FakeMachine, scene: FakeScene, static: Path) -> Callable[..., FastAPI]:
-    def make(*, host: str = "127.0.0.1", port: int = PORT) -> FastAPI:
-        return create_app(
-            machine=machine,
-            scene=scene,
-            allowed_hosts=allowed_hosts(host, port),
-            port=port,
-            static_dir=static,
-        )
+def make_app(robot: Robot, static: Path) -> Callable[..., FastAPI]:
+    """For tests that change the application or what it serves."""
+
+    def make(folder: Path = static) -> FastAPI:
+        return _app(FakeMachine(robot), FakeScene(), folder)
 
     return make
 
 
 @pytest.fixture
-def app(make_app: Callable[..., FastAPI]) -> FastAPI:
-    return make_app()
-
-
-@pytest.fixture
-def client(app: FastAPI) -> Iterator[TestClient]:
+def client(the_app: FastAPI, machine: FakeMachine) -> Iterator[TestClient]:
     """A program on this computer: no browser, no cookie."""
-    with TestClient(app, base_url=ORIGIN) as client:
+    with TestClient(the_app, base_url=ORIGIN) as client:
         yield client
 
 
@@ -196,12 +212,12 @@ def eventually(look: Callable[[], Any], what: str) -> Any:
 class Live:
     """The application behind a real server on a port the system chose."""
 
-    def __init__(self, make_app: Callable[..., FastAPI]) -> None:
+    def __init__(self, make_app: Callable[[int], FastAPI]) -> None:
         self._socket = listen("127.0.0.1", 0)
         self.port = self._socket.getsockname()[1]
         self.url = f"http://127.0.0.1:{self.port}"
         started = threading.Event()
-        self._server = Server(make_app(port=self.port), started_up=started.set)
+        self._server = Server(make_app(self.port), started_up=started.set)
         self._thread = threading.Thread(
             target=lambda: asyncio.run(self._server.serve(sockets=[self._socket]))
         )
@@ -225,8 +241,8 @@ class Live:
 
 
 @pytest.fixture
-def live(make_app: Callable[..., FastAPI]) -> Iterator[Live]:
-    server = Live(make_app)
+def live(machine: FakeMachine, scene: FakeScene, static: Path) -> Iterator[Live]:
+    server = Live(lambda port: _app(machine, scene, static, port))
     yield server
     server.close()
 

@@ -148,8 +148,8 @@ def test_every_route_is_behind_the_guard(client: TestClient, method: str, path: 
 
 
 @pytest.mark.parametrize("path", ["/ws", "/scene"])
-def test_every_websocket_is_behind_the_guard(app: FastAPI, path: str) -> None:
-    client = TestClient(app, base_url="http://127.0.0.1:8000")
+def test_every_websocket_is_behind_the_guard(the_app: FastAPI, path: str) -> None:
+    client = TestClient(the_app, base_url="http://127.0.0.1:8000")
     for headers in ({"origin": "null"}, {"sec-fetch-site": "same-site"}):
         with (
             pytest.raises(WebSocketDenialResponse) as denied,

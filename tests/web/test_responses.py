@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -31,7 +32,9 @@ EVERY_KIND = [
 
 
 @pytest.fixture
-def failing(app: FastAPI) -> TestClient:
+def failing(make_app: Callable[..., FastAPI]) -> TestClient:
+    app = make_app()
+
     async def fail() -> None:
         raise RuntimeError("inside knowledge")
 
@@ -172,13 +175,18 @@ def test_files_have_the_types_that_browsers_need(client: TestClient) -> None:
     assert client.get("/main.js").headers["content-type"].startswith("text/javascript")
 
 
-def test_a_file_is_sent_again_only_when_it_changed(client: TestClient, static: Path) -> None:
+def test_a_file_is_sent_again_only_when_it_changed(
+    make_app: Callable[..., FastAPI], tmp_path: Path
+) -> None:
+    file = tmp_path / "main.js"
+    file.write_text("export {};")
+    client = TestClient(make_app(tmp_path), base_url="http://127.0.0.1:8000")
     tag = client.get("/main.js").headers["etag"]
     again = client.get("/main.js", headers={"if-none-match": tag})
     assert (again.status_code, again.content) == (304, b"")
-    (static / "main.js").write_text("export const changed = true;")
+    file.write_text("export const changed = true;")
     assert "changed" in client.get("/main.js", headers={"if-none-match": tag}).text
-    (static / "main.js").unlink()
+    file.unlink()
     assert client.get("/main.js").status_code == 404
 
 
