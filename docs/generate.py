@@ -1,7 +1,7 @@
 """Writes into the docs what the code says: each block between its two markers.
 
-    python docs/generate.py          write
-    python docs/generate.py --check  status 1 and the names of the pages that are not today's
+python docs/generate.py          write
+python docs/generate.py --check  status 1 and the names of the pages that are not today's
 """
 
 from __future__ import annotations
@@ -33,7 +33,9 @@ def fill(text: str) -> str:
 
 
 def main() -> int:
-    stale = [page for page in sorted(DOCS.glob("*.md")) if fill(page.read_text()) != page.read_text()]
+    stale = [
+        page for page in sorted(DOCS.glob("*.md")) if fill(page.read_text()) != page.read_text()
+    ]
     if "--check" in sys.argv:
         for page in stale:
             print(f"{page} is not today's; run: python docs/generate.py")

@@ -1,0 +1,85 @@
+"""Takes the pictures in the docs from the running program: python docs/screenshots.py"""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+import time
+import urllib.request
+from pathlib import Path
+from typing import Literal
+
+from playwright.sync_api import Browser, Page, sync_playwright
+
+DOCS = Path(__file__).parent
+SIZES = {"1280x800": (1280, 800), "390x844": (390, 844)}
+THEMES: tuple[Literal["light", "dark"], ...] = ("light", "dark")
+WAY = [(70, 30), (20, 80), (-60, 40), (-30, -50), (60, -30), (90, 20)]  # mm, drawn as a trail
+HEIGHT = -320
+FLAGS = [
+    "--no-sandbox",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--ignore-gpu-blocklist",
+]
+LONG = 60_000  # ms
+
+
+def main() -> None:
+    command = [sys.executable, "-m", "deltaviz", "serve", "--port", "0", "--no-browser"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as server:
+        assert server.stdout is not None
+        url = next(
+            found[0] for line in server.stdout if (found := re.search(r"http://[\d.:]+", line))
+        )
+        try:
+            with sync_playwright() as playwright:
+                browser = playwright.chromium.launch(
+                    executable_path="/usr/bin/chromium", args=FLAGS
+                )
+                for theme in THEMES:
+                    for name, (width, height) in SIZES.items():
+                        take(browser, url, theme, (width, height), f"console-{name}-{theme}.png")
+        finally:
+            server.terminate()
+
+
+def take(
+    browser: Browser, url: str, theme: Literal["light", "dark"], size: tuple[int, int], name: str
+) -> None:
+    context = browser.new_context(
+        viewport={"width": size[0], "height": size[1]}, color_scheme=theme
+    )
+    page = context.new_page()
+    page.goto(url)
+    page.locator("#mode", has_text="Idle").wait_for(timeout=LONG)
+    page.frame_locator("#scene").locator("canvas").first.wait_for(timeout=LONG)
+    for x, y in WAY:
+        go(page, url, x, y)
+    page.wait_for_timeout(3000)  # for the pictures only: let the drawing catch up
+    page.screenshot(path=DOCS / name)
+    context.close()
+
+
+def go(page: Page, url: str, x: float, y: float) -> None:
+    """Move there from the page, so that it is the page that controls."""
+    page.evaluate(
+        """async ([x, y, z]) => fetch("/api/move", {method: "POST",
+            headers: {"content-type": "application/json"},
+            body: JSON.stringify({xyz_mm: [x, y, z], speed: 0.5})})""",
+        [x, y, HEIGHT],
+    )
+    end = time.monotonic() + 30
+    while time.monotonic() < end:
+        with urllib.request.urlopen(f"{url}/api/state") as reply:
+            state = json.load(reply)
+        if state["mode"] == "idle" and abs(state["xyz_mm"][0] - x) < 1:
+            return
+        time.sleep(0.02)
+    raise SystemExit(f"the robot did not arrive: {state}")
+
+
+if __name__ == "__main__":
+    main()
