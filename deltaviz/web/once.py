@@ -1,4 +1,4 @@
-"""Bad input is logged once per kind and client, then counted: never a flood of lines."""
+"""Bad input is logged once a minute per kind and client: never a flood of lines."""
 
 from __future__ import annotations
 
@@ -11,32 +11,25 @@ _REMEMBERED = 256
 
 
 class OncePerMinute:
-    """Says whether a thing may be logged now, and how often it was held back since."""
+    """Says whether a thing may be logged now."""
 
     def __init__(self, *, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
         self._said: dict[Hashable, float] = {}
-        self._held_back: dict[Hashable, int] = {}
 
     def may_say(self, kind: Hashable) -> bool:
         now = self._clock()
         said = self._said.get(kind)
         if said is not None and now - said < _QUIET:
-            self._held_back[kind] = self._held_back.get(kind, 0) + 1
             return False
         if len(self._said) >= _REMEMBERED:
             self._forget_oldest()
         self._said[kind] = now
         return True
 
-    def held_back(self, kind: Hashable) -> int:
-        """How many lines of this kind were held back since the last one."""
-        return self._held_back.pop(kind, 0)
-
     def _forget_oldest(self) -> None:
         oldest = min(self._said, key=lambda kind: self._said[kind])
         del self._said[oldest]
-        self._held_back.pop(oldest, None)
 
 
 class OncePerMinuteFilter(logging.Filter):

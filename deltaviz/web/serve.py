@@ -102,6 +102,8 @@ class _Life:
         return task
 
     def _build(self, machine: MachineClient) -> Server:
+        from deltaviz.scene.listener import ListenerOpenError
+        from deltaviz.scene.page import PageFormatError
         from deltaviz.scene.view import Scene
         from deltaviz.web.app import create_app
         from deltaviz.web.origin import allowed_hosts
@@ -109,14 +111,18 @@ class _Life:
         from deltaviz.web.static_files import static_dir
 
         scene = Scene(machine)
-        scene.start()
+        try:
+            folder = static_dir()
+            scene.start()
+        except (FileNotFoundError, ListenerOpenError, PageFormatError) as error:
+            raise StartError(str(error)) from None
         self._scene = scene
         app = create_app(
             machine=machine,
             scene=scene,
             allowed_hosts=allowed_hosts(self._host, self._port),
             port=self._port,
-            static_dir=static_dir(),
+            static_dir=folder,
         )
         return Server(app, started_up=self._tell)
 

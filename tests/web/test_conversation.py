@@ -278,3 +278,15 @@ def test_a_stop_is_told_before_hear_returns(page: Page, machine: Any) -> None:
     machine.answer = None  # the controller answers nothing
     page.says({"type": "override", "value": 1}, {"type": "stop"})
     assert machine.told[-1] == ("stop", "me")
+
+
+def test_what_was_logged_is_logged_again_after_a_minute() -> None:
+    now = [0.0]
+    once = OncePerMinute(clock=lambda: now[0])
+    assert once.may_say("a")
+    assert once.may_say("b")
+    for now[0], may in ((1.0, False), (59.9, False), (60.0, True), (60.1, False)):
+        assert once.may_say("a") is may
+    for kind in range(10_000):  # what is remembered is bounded
+        once.may_say(kind)
+    assert once.may_say("a")
