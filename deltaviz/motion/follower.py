@@ -156,6 +156,8 @@ class Follower:
         self._goal, self._override = goal, override
         self._settled, self._wait, self._failures = False, 0, 0
         self._held = False
+        if self.resting:
+            self._planner.forget()
         if not moved:
             return
         space = self._space_of(goal)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from deltaviz.motion.check import Checker, Fault, Verdict
 from deltaviz.motion.followed import Array, Followed
 from deltaviz.motion.plan import Plan
-from deltaviz.motion.shaping import Shaper, Way
+from deltaviz.motion.shaping import Shaper, Shares, Way
 from deltaviz.motion.space import CartesianSpace, JointSpace, Space
 
 TRIES = 5  # of one tick, over all ways
@@ -17,6 +18,7 @@ AIM = 0.985  # of a limit: where a slower try should end up
 RESERVE = 0.997  # of the joints' limits: the rest is for rounding to the board's numbers
 TIP_RESERVE = 0.9985  # of the tip's: the rest is for what lies between the knots
 RECOVERY = 1.3  # how much of what was given up is asked for again at the next plan
+NUDGE = 0.98  # to where ruckig may find a solution after all
 BRAKE_SLOWER = 0.6  # a brake that leaves the legal region: go slower by this
 
 
@@ -68,9 +70,10 @@ class Planner:
         q, v, a = plan.q[at], plan.v[at], plan.a[at]
         while self._tries < TRIES and self._clock() < self._ends:
             self._tries += 1
-            rows = self._shapers[space](q, v, a, way, velocity=velocity, acceleration=acceleration)
-            if rows is None:
-                return None
+            rows = self._shapers[space](q, v, a, way, Shares(velocity, acceleration))
+            if rows is None:  # a gap in ruckig's solutions: they are small
+                velocity *= NUDGE
+                continue
             made = self._with_joints(space, plan, at, rows)
             if made is None:
                 return None
@@ -88,10 +91,10 @@ class Planner:
             if verdict.velocity > 1.0:
                 velocity *= AIM / verdict.velocity
             if verdict.acceleration > 1.0:
-                share = AIM / verdict.acceleration
-                acceleration *= max(0.1, share)
+                share = max(0.1, AIM / verdict.acceleration)
+                acceleration *= share
                 # Part of it comes from turning fast, which only a lower speed helps.
-                velocity *= np.sqrt(max(0.1, share)) if self._tries > 1 else 1.0
+                velocity *= math.sqrt(share) if self._tries > 1 else 1.0
         return None
 
     def _with_joints(

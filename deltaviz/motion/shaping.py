@@ -15,9 +15,11 @@ import numpy as np
 from deltaviz.motion.compiled import compiled
 from deltaviz.motion.followed import Array
 from deltaviz.motion.otg import Generator, Request
-from deltaviz.motion.space import CartesianSpace, Space
+from deltaviz.motion.space import CartesianSpace, JointSpace, Space
 
 ASIDE = 0.05  # least share of the limits for an axis that has nothing to do
+ACROSS = 0.3  # of the velocity limit: what an axis across the way may use
+IN_LINE = 1e-9  # rad/s and rad/s²: less than this across the way is rounding
 HEADROOM = 0.997  # of the limits: cubics through exact knots ripple
 
 
@@ -34,6 +36,14 @@ class Way:
     free: bool = False
 
 
+@dataclass(frozen=True, slots=True)
+class Shares:
+    """What part of the limits (0-1] to plan with."""
+
+    velocity: float = 1.0
+    acceleration: float = 1.0
+
+
 class Shaper:
     """Plans ways in one space."""
 
@@ -44,64 +54,83 @@ class Shaper:
         self._generator = Generator(space.axes, 1e-3 if metres else 1.0)
 
     def __call__(
-        self, q: Array, v: Array, a: Array, way: Way, *, velocity: float, acceleration: float
+        self, q: Array, v: Array, a: Array, way: Way, shares: Shares
     ) -> tuple[Array, Array, Array] | None:
-        """Position, velocity, acceleration (K+1, d) at the knots of the motion, or None.
-
-        `velocity` and `acceleration` (0-1] are the shares of the limits to plan with.
-        """
+        """Position, velocity, acceleration (K+1, d) at the knots of the motion, or None."""
         if isinstance(self._space, CartesianSpace):
-            return self._tip(self._space, q, v, a, way, velocity, acceleration)
-        space = self._space
-        goal = np.zeros(space.axes) if way.displacement is None else way.displacement
-        moved = way.displacement is not None
-        held = tuple(moved and not (way.free and d == 0.0) for d in goal.tolist())
-        request = Request(
-            displacement=goal,
-            velocity=v,
-            acceleration=a,
-            held=held,
-            max_velocity=np.maximum(way.speed * (velocity * HEADROOM), 1e-6),
-            max_acceleration=space.acceleration * (acceleration * HEADROOM),
-            max_jerk=space.jerk * acceleration**1.5,
-            together=True,
-        )
-        rows = self._generator(request, self._period)
-        return None if rows is None else (q + rows[0], rows[1], rows[2])
-
-    def _tip(
-        self,
-        space: CartesianSpace,
-        q: Array,
-        v: Array,
-        a: Array,
-        way: Way,
-        velocity: float,
-        acceleration: float,
-    ) -> tuple[Array, Array, Array] | None:
-        moved = way.displacement is not None
-        ahead = way.displacement if way.displacement is not None else v
-        axes, here_v, here_a = frame(ahead, v, a)
-        shares = axis_shares(here_v, here_a, space.velocity, space.acceleration)
-        goal = np.zeros(space.axes)
-        if moved:
-            goal[0] = float(np.linalg.norm(ahead))
-        across = np.maximum(np.abs(here_v), 0.3 * space.velocity * velocity)
-        across[0] = float(way.speed[0]) * velocity * HEADROOM
-        request = Request(
-            displacement=goal,
-            velocity=here_v,
-            acceleration=here_a,
-            held=(moved, *(moved and not way.free,) * (space.axes - 1)),
-            max_velocity=np.maximum(across, 1e-3),
-            max_acceleration=shares * (space.acceleration * acceleration * HEADROOM),
-            max_jerk=shares * (space.jerk * acceleration**1.5),
-            together=False,
-        )
+            axes, request = _tip_request(self._space, v, a, way, shares)
+        else:
+            axes, request = _joint_request(self._space, v, a, way, shares)
         rows = self._generator(request, self._period)
         if rows is None:
             return None
         return q + rows[0] @ axes, rows[1] @ axes, rows[2] @ axes
+
+
+def _tip_request(
+    space: CartesianSpace, v: Array, a: Array, way: Way, shares: Shares
+) -> tuple[Array, Request]:
+    moved = way.displacement is not None
+    ahead = way.displacement if way.displacement is not None else v
+    axes, here_v, here_a = frame(ahead, v, a)
+    parts = axis_shares(here_v, here_a, space.velocity, space.acceleration)
+    most = np.maximum(np.abs(here_v), ACROSS * space.velocity * shares.velocity)
+    most[0] = float(way.speed[0]) * shares.velocity * HEADROOM
+    return axes, Request(
+        displacement=_along(ahead, moved),
+        velocity=here_v,
+        acceleration=here_a,
+        held=(moved, *(moved and not way.free,) * (space.axes - 1)),
+        max_velocity=np.maximum(most, 1e-3),
+        max_acceleration=parts * (space.acceleration * shares.acceleration * HEADROOM),
+        max_jerk=parts * (space.jerk * shares.acceleration**1.5),
+        together=False,
+    )
+
+
+def _joint_request(
+    space: JointSpace, v: Array, a: Array, way: Way, shares: Shares
+) -> tuple[Array, Request]:
+    moved = way.displacement is not None
+    ahead = way.displacement if way.displacement is not None else v
+    velocity = way.speed * (shares.velocity * HEADROOM)
+    acceleration = space.acceleration * (shares.acceleration * HEADROOM)
+    jerk = space.jerk * shares.acceleration**1.5
+    axes, here_v, here_a = frame(ahead, v, a)
+    if max(np.abs(here_v[1:]).max(), np.abs(here_a[1:]).max()) < IN_LINE and ahead.any():
+        # All joints keep their proportions: one axis, as fast as the slowest joint allows.
+        with np.errstate(divide="ignore"):
+            along = [float(np.min(limit / np.abs(axes[0]))) for limit in (acceleration, jerk)]
+            part = np.abs(axes[0]) > IN_LINE
+            fastest = float(np.min(velocity[part] / np.abs(axes[0][part])))
+        return axes, Request(
+            displacement=_along(ahead, moved),
+            velocity=here_v,
+            acceleration=here_a,
+            held=(moved,) * space.axes,
+            max_velocity=np.full(space.axes, max(fastest, 1e-6)),
+            max_acceleration=np.full(space.axes, along[0]),
+            max_jerk=np.full(space.axes, along[1]),
+            together=False,
+        )
+    goal = ahead if moved else np.zeros(space.axes)
+    return np.eye(space.axes), Request(
+        displacement=goal,
+        velocity=v,
+        acceleration=a,
+        held=tuple(moved and not (way.free and d == 0.0) for d in goal.tolist()),
+        max_velocity=np.maximum(velocity, 1e-6),
+        max_acceleration=acceleration,
+        max_jerk=jerk,
+        together=True,
+    )
+
+
+def _along(ahead: Array, moved: bool) -> Array:
+    goal = np.zeros(len(ahead))
+    if moved:
+        goal[0] = float(np.linalg.norm(ahead))
+    return goal
 
 
 @compiled
