@@ -1,0 +1,53 @@
+"""Runs every benchmark, one after the other, and writes what they print to docs/measurements.md."""
+
+from __future__ import annotations
+
+import os
+import platform
+import subprocess
+import sys
+from datetime import date
+from pathlib import Path
+
+PAGE = Path(__file__).parents[1] / "docs" / "measurements.md"
+BENCHMARKS = {
+    "startup": "Start-up",
+    "kinematics": "Inverse and forward for a million poses, against scalar C",
+    "follower": "One tick of the follower",
+    "loop": "The control loop, alone and on busy cores",
+    "watched_loop": "The control loop while browsers watch",
+    "latency": "Pointer to step",
+}
+
+
+def processor() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        return platform.processor()
+    return next((s.split(":", 1)[1].strip() for s in lines if s.startswith("model name")), "?")
+
+
+def main() -> int:
+    chosen = sys.argv[1:] or list(BENCHMARKS)
+    parts = [
+        "# Measurements",
+        "",
+        f"Made by `python -m benchmarks` on {date.today()}: {os.cpu_count()} cores "
+        f"({processor()}), Python {platform.python_version()}, no graphics card. Browsers draw in "
+        "software there and share the cores with everything else.",
+    ]
+    for name in chosen:
+        command = [sys.executable, "-m", f"benchmarks.{name}"]
+        done = subprocess.run(command, stdout=subprocess.PIPE, text=True, cwd=PAGE.parents[1])
+        if done.returncode:
+            return done.returncode
+        print(done.stdout)
+        parts += ["", f"## {BENCHMARKS[name]}", "", "```text", done.stdout.strip("\n"), "```"]
+    if chosen == list(BENCHMARKS):
+        PAGE.write_text("\n".join(parts) + "\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

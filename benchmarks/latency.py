@@ -1,0 +1,147 @@
+"""From a move of the pointer to the simulated board's first step, and the share of each stage.
+
+    python -m benchmarks.latency [--moves N]
+
+A real page drags the effector in small moves, at rest between them. What passes is seen in this
+process: the pointer's own time stamp, the drag's arrival at the scene, and the machine's
+snapshots, which come every 12 ms: single values are that coarse, medians less so.
+"""
+
+from __future__ import annotations
+
+import argparse
+import statistics
+import threading
+import time
+from concurrent.futures import Future
+from dataclasses import dataclass, field
+
+from playwright.sync_api import Page
+
+from benchmarks.served import Served, chromium, open_console, served
+from deltaviz.machine.intent import Answer, DragTo, Intent
+from deltaviz.machine.snapshot import Snapshot
+
+PATIENCE = 30.0  # s
+STEP = 24.0  # pixels
+PANEL = 288  # pixels of viser's panel, left of the robot
+
+STAMP = """() => {
+    const frame = document.querySelector("#scene").contentWindow;
+    frame.addEventListener("pointermove", (event) => {
+        window.movedAt = frame.performance.timeOrigin + event.timeStamp;
+    }, true);
+}"""
+
+
+@dataclass
+class Witness:
+    """Stamps what passes between the surfaces and the machine, in s of the monotonic clock."""
+
+    running: Served
+    drags: list[float] = field(default_factory=list)
+    snapshots: list[Snapshot] = field(default_factory=list)
+    ended: threading.Event = field(default_factory=threading.Event)
+
+    def watch(self) -> None:
+        post = self.running.machine.post
+
+        def noted(intent: Intent) -> Future[Answer]:
+            if isinstance(intent, DragTo):
+                self.drags.append(intent.at)
+            return post(intent)
+
+        self.running.machine.post = noted  # type: ignore[method-assign]
+        threading.Thread(target=self._poll, daemon=True).start()
+
+    def _poll(self) -> None:
+        while not self.ended.wait(0.001):
+            snapshot = self.running.machine.snapshot
+            if not self.snapshots or snapshot is not self.snapshots[-1]:
+                self.snapshots.append(snapshot)
+
+    def rest(self) -> Snapshot:
+        """The first of half a second's snapshots that all stand still."""
+        end = time.monotonic() + PATIENCE
+        while time.monotonic() < end:
+            time.sleep(0.05)
+            recent = [s for s in self.snapshots if s.at > self.snapshots[-1].at - 0.5]
+            if len(recent) > 3 and len({(s.counts, s.target_xyz) for s in recent}) == 1:
+                return recent[-1]
+        raise SystemExit("the robot does not come to rest")
+
+
+def one_move(page: Page, witness: Witness, x: float, y: float) -> tuple[float, float, float] | None:
+    """Stages of one move, s: to the scene, to the command, to the first step. None: no step."""
+    before = witness.rest()
+    witness.drags.clear()
+    to_monotonic = time.monotonic() - time.time()
+    page.mouse.move(x, y)
+    after = witness.rest()
+    if after.counts == before.counts or not witness.drags:
+        return None
+    moved = page.evaluate("() => window.movedAt") / 1e3 + to_monotonic
+    since = [s for s in witness.snapshots if s.at > before.at]
+    commanded = next(s.at for s in since if s.command_xyz != before.command_xyz)
+    stepped = next(s.at for s in since if s.counts != before.counts)
+    return witness.drags[0] - moved, commanded - witness.drags[0], stepped - commanded
+
+
+def effector(page: Page, running: Served) -> tuple[float, float]:
+    """Grabs the drag handle: presses down the robot's axis until one starts a drag."""
+    box = page.locator("#scene").bounding_box()
+    assert box is not None
+    x = box["x"] + (box["width"] + PANEL) / 2
+    for y in range(int(box["y"] + box["height"]) - 40, int(box["y"]), -12):
+        page.mouse.move(x, y)
+        page.mouse.down()
+        page.wait_for_timeout(100)
+        if running.machine.snapshot.holder is not None:
+            return x, y
+        page.mouse.up()
+    raise SystemExit("no drag handle found")
+
+
+def report(stages: list[tuple[float, float, float]]) -> None:
+    names = (
+        "pointer to the scene's callback",
+        "callback to the command",
+        "command to the first step",
+    )
+    totals = [sum(s) for s in stages]
+    middle = statistics.median(totals)
+    print(f"{'pointer move to first step, ms':36}{'p50':>8}{'p99':>8}{'share':>8}")
+    for name, column in zip(names, zip(*stages, strict=True), strict=True):
+        half, most = statistics.median(column), quantile(column, 0.99)
+        print(f"{name:36}{1e3 * half:8.1f}{1e3 * most:8.1f}{half / middle:8.0%}")
+    print(f"{'all':36}{1e3 * middle:8.1f}{1e3 * quantile(totals, 0.99):8.1f}{1:8.0%}")
+    print(f"{len(stages)} moves")
+
+
+def quantile(values: list[float] | tuple[float, ...], share: float) -> float:
+    ordered = sorted(values)
+    return ordered[min(len(ordered) - 1, int(share * len(ordered)))]
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description="From a pointer move to the board's first step.")
+    parser.add_argument("--moves", type=int, default=60)
+    moves = parser.parse_args().moves
+    with served() as running, chromium() as browser:
+        page = open_console(browser, running.url)
+        witness = Witness(running)
+        x, y = effector(page, running)
+        witness.watch()
+        page.evaluate(STAMP)
+        stages: list[tuple[float, float, float]] = []
+        for number in range(moves):
+            one = one_move(page, witness, x + (STEP if number % 2 == 0 else 0.0), y)
+            if one is not None:
+                stages.append(one)
+        page.mouse.up()
+        witness.ended.set()
+    report(stages)
+
+
+if __name__ == "__main__":
+    main()
