@@ -15,6 +15,7 @@ import socket
 import sys
 import time
 import traceback
+from collections.abc import Generator
 from functools import partial
 from multiprocessing.connection import wait
 from typing import Any
@@ -108,9 +109,9 @@ class Process:
         if self.told_to_end:
             self._end("The machine was told to end.")
         self._read_stops()
+        self._receive(time.monotonic())  # before intents, which may begin a motion on its news
         self._read_intents()
         now = time.monotonic()
-        self._receive(now)
         moving = self._controller.mode in MOVING
         if moving and self._ticked is not None:
             self._periods.add(now - self._ticked)
@@ -218,9 +219,10 @@ class Process:
 
 
 def load(source: str) -> Robot:
-    """The robot, with all compiled that the loop will call."""
+    """The robot, with all compiled that the loop will call. Compiling takes its turn."""
     robot = load_robot(source)
-    warm_up(robot)
+    with _in_turn():
+        warm_up(robot)
     return robot
 
 
@@ -251,6 +253,19 @@ def _come_first() -> None:
         os.setpriority(os.PRIO_PROCESS, 0, NICE)
     with contextlib.suppress(OSError, AttributeError):
         os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(1))
+
+
+@contextlib.contextmanager
+def _in_turn() -> Generator[None]:
+    """Like any other process for a while: what takes seconds must not come first."""
+    if not hasattr(os, "sched_getscheduler") or os.sched_getscheduler(0) != os.SCHED_RR:
+        yield
+        return
+    os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
+    try:
+        yield
+    finally:
+        _come_first()
 
 
 def _tell_to_end(process: Process, *_: object) -> None:

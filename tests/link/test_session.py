@@ -188,7 +188,8 @@ def test_indices_wrap(session: Session) -> None:
     session.begin()
     flight = session.flight
     assert flight is not None
-    for k in range(65536 + 10):
+    flight._index = 65530  # pyright: ignore[reportPrivateUsage]
+    for k in range(65530, 65536 + 10):
         session.segment(knot((0.2, -0.2), (0.1, 0.0)), 10.0)
         session.receive(
             telemetry(epoch=65535, last_index=k & 0xFFFF, now=1000, t_queue_end=1000), 10.0

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -17,7 +18,6 @@ from deltaviz.link.transport import LinkError
 from deltaviz.machine import intent as i
 from deltaviz.machine.client import MachineClient
 from deltaviz.machine.mode import Mode
-from deltaviz.machine.snapshot import Snapshot
 from deltaviz.robots import RobotFileError
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc")
@@ -81,15 +81,15 @@ def move(client: MachineClient) -> None:
         away = -90.0 if start[0] > 0 else 90.0
         target = (start[0] + away, start[1], start[2])
         client.post(i.MoveToPoint(ME, target, 0.1)).result(PATIENCE)
-        wait_for(lambda: ended(client.snapshot) or moved(client.snapshot, start), "motion")  # noqa: B023
+        under_way = partial(moved_or_ended, client, start)
+        wait_for(under_way, "motion")
 
 
-def ended(snapshot: Snapshot) -> bool:
-    return snapshot.stop_reason is not None and snapshot.mode is Mode.IDLE
-
-
-def moved(snapshot: Snapshot, start: tuple[float, ...]) -> bool:
-    return snapshot.xyz is not None and abs(snapshot.xyz[0] - start[0]) > 2.0
+def moved_or_ended(client: MachineClient, start: tuple[float, ...]) -> bool:
+    now = client.snapshot
+    if now.stop_reason is not None and now.mode is Mode.IDLE:
+        return True
+    return now.xyz is not None and abs(now.xyz[0] - start[0]) > 2.0
 
 
 def test_it_moves_stops_and_ends(machine: MachineClient) -> None:

@@ -42,7 +42,7 @@ def test_stop_leads_to_stopping_wherever_something_could_move(mode: Mode) -> Non
     assert after(mode, Event.STOP) is (mode if mode in still else Mode.STOPPING)
 
 
-@pytest.mark.parametrize("mode", set(Mode) - {Mode.OFFLINE})
+@pytest.mark.parametrize("mode", sorted(set(Mode) - {Mode.OFFLINE}))
 def test_estop_leads_to_estop_from_everywhere(mode: Mode) -> None:
     assert after(mode, Event.ESTOP) is Mode.ESTOP
 
@@ -55,7 +55,7 @@ def test_what_the_board_reports_wins_in_every_mode(mode: Mode) -> None:
     assert after(mode, Event.OFF) is Mode.DISABLED
 
 
-@pytest.mark.parametrize("mode", MOVING - {Mode.STOPPING})
+@pytest.mark.parametrize("mode", sorted(MOVING - {Mode.STOPPING}))
 def test_nothing_leads_from_motion_to_motion_but_the_persons_own_wish(mode: Mode) -> None:
     for event in REPORTED:
         target = after(mode, event)
