@@ -17,21 +17,6 @@ def about(axis: int, angle: ArrayLike) -> Array:
     return out
 
 
-def product(a: Array, b: Array) -> Array:
-    """First b, then a: (..., 4), (..., 4) to (..., 4)."""
-    aw, ax, ay, az = np.moveaxis(a, -1, 0)
-    bw, bx, by, bz = np.moveaxis(b, -1, 0)
-    return np.stack(
-        (
-            aw * bw - ax * bx - ay * by - az * bz,
-            aw * bx + ax * bw + ay * bz - az * by,
-            aw * by - ax * bz + ay * bw + az * bx,
-            aw * bz + ax * by - ay * bx + az * bw,
-        ),
-        axis=-1,
-    )
-
-
 def from_down(direction: Array) -> Array:
     """The shortest rotation that turns -z to `direction`, (..., 3) of any length to (..., 4)."""
     length = np.linalg.norm(direction, axis=-1, keepdims=True)

@@ -6,6 +6,7 @@ Everything that touches nodes runs in viser's event loop, so nothing here needs 
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import logging
 import time
 from collections.abc import Callable
@@ -106,11 +107,16 @@ class Scene:
     def set_theme(self, session: str, dark: bool) -> None:
         """Show this session's scene dark or light. From any thread."""
         self._display_of(session).dark = dark
-        self._loop.call_soon_threadsafe(self._apply_theme, session)
+        self._soon(self._apply_theme, session)
 
     def tell(self, session: str, text: str) -> None:
         """Show a sentence in this session's panel for a while. From any thread."""
-        self._loop.call_soon_threadsafe(self._show_note, session, text)
+        self._soon(self._show_note, session, text)
+
+    def _soon(self, call: Callable[..., None], *args: str) -> None:
+        """In viser's event loop; nowhere, once that is closed."""
+        with contextlib.suppress(RuntimeError):
+            self._loop.call_soon_threadsafe(call, *args)
 
     def _set_up(self) -> None:
         server = self._listener.server

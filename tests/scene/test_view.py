@@ -211,15 +211,16 @@ def test_the_trail_is_as_long_as_it_is(steady: np.random.Generator) -> None:
     trail = TrailPoints()
     assert trail.segments().shape == (SEGMENTS, 2, 3)
     now = 0.0
-    for point in np.cumsum(steady.normal(0, 4.0, (500, 3)), axis=0):
+    points = np.cumsum(steady.normal(0, 4.0, (500, 3)), axis=0)
+    for point in points:
         now += 0.02
         trail.pass_through(tuple(point), now)
         newest = trail.segments()[0, 0]
         assert newest == pytest.approx(point)
     segments = trail.segments()
     assert np.allclose(segments[1:, 0], segments[:-1, 1])  # one line
-    trail.pass_through(tuple(point), now + 60.0)
-    assert np.allclose(trail.segments(), point)  # long forgotten
+    trail.pass_through(tuple(points[-1]), now + 60.0)
+    assert np.allclose(trail.segments(), points[-1])  # long forgotten
 
 
 @pytest.mark.parametrize(("reach", "depth"), [(0.24, (-0.44, -0.225)), (0.62, (-0.9, -0.65))])
