@@ -16,8 +16,8 @@ from deltaviz.motion.space import Space
 RESERVE = 0.25  # units of margin, about mm
 SHARES = np.linspace(0.0, 1.0, 49)[1:, None]  # samples of a line
 PROBE = 1e-3  # mm; step of the margins' differences
-NEAR = 60.0  # margins above this do not matter to a step of at most STEP mm
-STEP = 15.0  # mm; the longest step along the boundary
+NEAR = 60.0  # margins above this do not matter to one step
+STEP = 15.0  # mm; how long a step along the boundary is at most
 SHORTER = (1.0, 0.25, 0.05)  # shares of a step that are tried
 RESTORATIONS = 3  # steps back onto the legal side
 OVERSHOOT = 0.01  # units of margin beyond the floor, so that one step back suffices
@@ -57,7 +57,7 @@ class Boundary:
             near, far = points[bad - 1] if bad else near, points[bad]
         return near
 
-    def step(self, at: Array, target: Array, floor: Array) -> Array:
+    def step(self, at: Array, target: Array, floor: Array, longest: float = STEP) -> Array:
         """One step along the boundary from a legal place, to where the target is nearer.
 
         The linearised step leaves a curved boundary: it is brought back along the slopes.
@@ -65,8 +65,8 @@ class Boundary:
         unit = self._space.unit
         towards = (target - at) / unit
         before = float(np.linalg.norm(towards))
-        if before > STEP:
-            towards *= STEP / before
+        if before > longest:
+            towards *= longest / before
         margins, slopes = self._slopes(at)
         move = nearest_step(margins, slopes, towards, floor, NEAR)
         for share in SHORTER:

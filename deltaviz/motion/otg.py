@@ -18,8 +18,6 @@ from deltaviz.motion.followed import Array
 
 _otg: Any = ruckig  # it has no types
 
-PIECES = 11  # of constant jerk in one profile: 2 that bring it within limits, 7, 2 to leave them
-
 
 @dataclass(frozen=True, slots=True)
 class Request:
@@ -48,6 +46,7 @@ class Generator:
         self._trajectory = _otg.Trajectory(axes)
         self._axes = axes
         self._scale = scale
+        self._controlled: tuple[tuple[bool, ...], bool] | None = None
         self._input.current_position = [0.0] * axes
 
     def __call__(self, request: Request, period: float) -> tuple[Array, Array, Array] | None:
@@ -60,12 +59,7 @@ class Generator:
         given.max_velocity = (request.max_velocity * scale).tolist()
         given.max_acceleration = (request.max_acceleration * scale).tolist()
         given.max_jerk = (request.max_jerk * scale).tolist()
-        alike = _otg.Synchronization.Phase if request.together else _otg.Synchronization.No
-        given.per_dof_synchronization = [alike] * self._axes
-        given.per_dof_control_interface = [
-            _otg.ControlInterface.Position if held else _otg.ControlInterface.Velocity
-            for held in request.held
-        ]
+        self._control(request.held, request.together)
         try:
             result = self._ruckig.calculate(given, self._trajectory)
         except _otg.RuckigError:
@@ -74,15 +68,23 @@ class Generator:
             return None
         return self._rows(request, period)
 
+    def _control(self, held: tuple[bool, ...], together: bool) -> None:
+        if self._controlled == (held, together):
+            return
+        self._controlled = (held, together)
+        alike = _otg.Synchronization.Phase if together else _otg.Synchronization.No
+        self._input.per_dof_synchronization = [alike] * self._axes
+        control = _otg.ControlInterface
+        self._input.per_dof_control_interface = [
+            control.Position if to_place else control.Velocity for to_place in held
+        ]
+
     def _rows(self, request: Request, period: float) -> tuple[Array, Array, Array]:
-        times = np.zeros((self._axes, PIECES))
-        jerks = np.zeros((self._axes, PIECES))
-        for axis, profile in enumerate(self._trajectory.profiles[0]):
-            times[axis] = (*profile.brake.t, *profile.t, *profile.accel.t)
-            jerks[axis] = (*profile.brake.j, *profile.j, *profile.accel.j)
-        duration = float(times.sum(axis=1).max())
+        profiles = self._trajectory.profiles[0]
+        times = np.array([(*p.brake.t, *p.t, *p.accel.t) for p in profiles])
+        jerks = np.array([(*p.brake.j, *p.j, *p.accel.j) for p in profiles]) / self._scale
+        duration = max(sum(row) for row in times.tolist())
         count = max(1, math.ceil(duration / period - 1e-6))
-        jerks /= self._scale
         q, v, a = run(times, jerks, request.velocity, request.acceleration, period, count)
         held = np.asarray(request.held)
         q[-1, held] = request.displacement[held]  # at rest there, whatever rounding says

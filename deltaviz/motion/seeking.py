@@ -8,7 +8,8 @@ from deltaviz.motion.boundary import Boundary
 from deltaviz.motion.followed import Array
 from deltaviz.motion.space import Space
 
-LEAD = 50.0  # mm; how far ahead of the robot the goal on the boundary runs
+LEADS = (4.0, 8.0, 12.0, 24.0)  # mm; steps along the boundary, ahead of the robot
+LEAD_RESERVE = 2.0  # units of margin, about mm, that they keep to limits
 STEPS = 4  # of descent in one tick
 BETTER = 0.2  # mm; what a new start must gain to move the goal
 ARRIVED = 0.01  # mm
@@ -23,9 +24,8 @@ class Seeker:
         self._inside = inside
         self._target: Array | None = None
         self._floor = inside
-        self._starts: list[Array] = []
+        self._starts: list[Array] = []  # where lines from the inside aim
         self._descending: Array | None = None
-        self._lead: Array | None = None
         self._detour = False
         self.goal = inside  # the target, or the nearest legal place known
         self.exact = True  # whether the goal is the target
@@ -35,7 +35,7 @@ class Seeker:
         known = self.goal if self._target is not None else None
         self._target = target
         self._floor = self._boundary.floor(q)
-        self._starts, self._descending, self._lead, self._detour = [], None, None, False
+        self._starts, self._descending, self._detour = [], None, False
         self.exact = not slide or self._boundary.is_legal(target)
         if self.exact:
             self.goal = target
@@ -45,8 +45,8 @@ class Seeker:
         if known is not None and self._distance(known) < self._distance(line):
             first = known
         self.goal = self._boundary.nearest(first, target, self._floor, STEPS)
-        inner = self._boundary.last_legal(self._inside, target, self._floor)
-        self._starts = [self.goal, inner, line, *self._around(target)]
+        self._descending = self.goal
+        self._starts = [target, *self._around(target)]
 
     def forget(self) -> None:
         """As if there had been no target."""
@@ -57,7 +57,8 @@ class Seeker:
         if self._target is None or self.exact or not (self._starts or self._descending is not None):
             return False
         if self._descending is None:
-            self._descending = self._starts.pop(0)
+            aim = self._starts.pop(0)
+            self._descending = self._boundary.last_legal(self._inside, aim, self._floor)
         before = self._descending
         self._descending = self._boundary.nearest(before, self._target, self._floor, STEPS)
         moved = float(np.linalg.norm(self._descending - before)) > 0.01 * self._space.unit
@@ -66,7 +67,6 @@ class Seeker:
         better = gained > (0.0 if follows else BETTER * self._space.unit)
         if better:
             self.goal = self._descending
-            self._lead = None
         if not moved:
             self._descending = None
         return better
@@ -77,13 +77,14 @@ class Seeker:
 
     def places(self, q: Array, *, slide: bool) -> list[tuple[Array, bool]]:
         """Places to make for from q, the best first; whether each is where it all ends."""
-        if not slide or self._boundary.clear(q, self.goal, self._boundary.floor(q, 0.0)):
+        floor = self._boundary.floor(q, 0.0)
+        if not slide or self._boundary.clear(q, self.goal, floor):
             self._detour = False
             return [(self.goal, True)]
-        if self._detour:
+        if self._detour and self._boundary.clear(q, self._inside, floor):
             return [(self._inside, False)]
-        lead = self._lead_from(q)
-        return [(lead, False), (0.5 * (lead + q), False)]
+        goal = self._inside if self._detour else self.goal
+        return [(lead, False) for lead in self._leads(q, goal, floor)]
 
     def stuck(self) -> None:
         """At rest and no nearer: the next way leads through the inside."""
@@ -92,30 +93,33 @@ class Seeker:
     def is_at(self, q: Array) -> bool:
         return float(np.linalg.norm(self.goal - q)) <= ARRIVED * self._space.unit
 
-    def _lead_from(self, q: Array) -> Array:
-        unit = self._space.unit
-        floor = np.minimum(self._floor, self._boundary.floor(q))
-        lead = self._lead
-        if lead is None or np.linalg.norm(lead - q) > 1.5 * LEAD * unit:
-            lead = self._boundary.last_legal(q, self.goal, floor)
-        for _ in range(STEPS):
-            if np.linalg.norm(lead - q) > LEAD * unit:
+    def _leads(self, q: Array, goal: Array, floor: Array) -> list[Array]:
+        """Places along the boundary that can be seen from q, the furthest first.
+
+        They keep further off than the goal does, so as to see round a bend.
+        """
+        least = np.minimum(LEAD_RESERVE, np.maximum(self._boundary.floor(q, np.inf), 0.0) + 0.5)
+        seen: list[Array] = []
+        at = q
+        for length in LEADS:
+            on = self._boundary.step(at, goal, least, length)
+            if np.array_equal(on, at):
                 break
-            lead = self._boundary.step(lead, self.goal, floor)
-        self._lead = lead
-        return lead
+            at = on
+            if self._boundary.clear(q, at, floor):
+                seen.append(at)
+        return seen[::-1] if seen else [at]
 
     def _around(self, target: Array) -> list[Array]:
-        """Starts to both sides of the straight line from the inside."""
+        """Places beside the target: lines from the inside to them meet the edge elsewhere."""
         ahead = target - self._inside
         length = float(np.linalg.norm(ahead))
-        starts: list[Array] = []
+        aims: list[Array] = []
         for side in np.eye(self._space.axes):
             across = side - ahead * (float(ahead @ side) / max(length * length, 1e-12))
             for sign in (0.7, -0.7):
-                aim = target + across * (sign * length)
-                starts.append(self._boundary.last_legal(self._inside, aim, self._floor))
-        return starts
+                aims.append(target + across * (sign * length))
+        return aims
 
     def _distance(self, place: Array) -> float:
         assert self._target is not None

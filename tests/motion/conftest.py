@@ -226,7 +226,7 @@ def _cubics(theta: Array, rate: Array, time: Array) -> tuple[Array, Array, Array
 
 
 def random_goal(robot: Robot, delta: Delta, rng: np.random.Generator, mode: str) -> Goal:
-    """One target of a kind: "inside", "edge", "far", "angles", "jog", "turn" or "mixed"."""
+    """One target of a kind: "inside", "rim", "edge", "far", "angles", "jog", "turn" or "mixed"."""
     if mode == "mixed":
         kinds = ["inside", "edge", "far", "angles", "jog", "turn", "rest"]
         mode = str(rng.choice(kinds))
@@ -239,6 +239,10 @@ def random_goal(robot: Robot, delta: Delta, rng: np.random.Generator, mode: str)
             angle, out = rng.uniform(0, 2 * np.pi), width * np.sqrt(rng.uniform(0, 0.8))
             place = out * np.cos(angle), out * np.sin(angle), rng.uniform(low, high)
             return ToPoint(tuple(map(float, place)), speed)
+        case "rim":
+            angle, out = rng.uniform(0, 2 * np.pi), width * np.sqrt(rng.uniform(0.1, 0.9))
+            level = float(rng.choice([low + 0.02, high - 0.02]))
+            return ToPoint((float(out * np.cos(angle)), float(out * np.sin(angle)), level))
         case "edge":
             way = rng.normal(size=3)
             way *= width * rng.uniform(0.9, 1.4) / np.linalg.norm(way)
@@ -305,7 +309,7 @@ def ride(
     follower = Follower(robot, robot.homing.ready, clock=clock, budget=budget)
     prepare(follower)
     done = Ride(
-        np.array(robot.homing.ready), tip=mode in ("inside", "edge", "far", "jog", "sprint")
+        np.array(robot.homing.ready), tip=mode in ("inside", "rim", "edge", "far", "jog", "sprint")
     )
     planned = sprints(robot, delta, rng) if mode == "sprint" else []
     goal: Goal = Rest()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -9,6 +11,7 @@ from numpy.typing import NDArray
 from deltaviz.motion.follower import Follower
 from deltaviz.motion.goal import ToPoint
 from deltaviz.robots import Robot, load_robot
+from deltaviz.robots.robot import Joints, Workspace
 
 Array = NDArray[np.float64]
 TARGETS = 8
@@ -58,3 +61,28 @@ def test_unreachable_targets_are_approached_as_far_as_possible(name: str) -> Non
         least = nearest(robot, cloud, target, rng)
         excess.append(float(np.linalg.norm(follower.xyz - target)) - least)
     assert max(excess) < 1.0
+
+
+def test_a_place_behind_a_bend_of_the_boundary_is_reached() -> None:
+    """With wide limits many straight lines between legal places leave the legal region."""
+    robot = replace(
+        load_robot("stm32"),
+        joints=Joints((-np.pi / 2,) * 3, (2.0,) * 3, np.radians(70)),
+        workspace=Workspace(z=(-445.0, -20.0), radius=400.0),
+    )
+    rng = np.random.default_rng(3)
+    places = legal(robot, rng.uniform([-400, -400, -445], [400, 400, -20], size=(4000, 3)))
+    share = np.linspace(0, 1, 60)[:, None]
+    follower = Follower(robot, robot.homing.ready, clock=lambda: 0.0, budget=1.0)
+    bends = 0
+    for place in places:
+        line = follower.xyz + (place - follower.xyz) * share
+        if len(legal(robot, line)) == len(line):
+            continue
+        bends += 1
+        for _ in range(400):
+            follower.step(ToPoint(tuple(place.tolist())))
+        assert follower.xyz == pytest.approx(place, abs=1e-3)
+        if bends == 6:
+            break
+    assert bends == 6

@@ -12,7 +12,7 @@ from deltaviz.motion.check import Fault
 from deltaviz.motion.follower import Follower
 
 PRESETS = ("stm32", "trossen", "zheng2023", "deltadraw")
-MODES = ("inside", "edge", "far", "angles", "jog", "turn", "mixed")
+MODES = ("inside", "rim", "edge", "far", "angles", "jog", "turn", "mixed")
 LIMITS = ("joint velocity", "joint acceleration", "tip velocity", "tip acceleration")
 
 Judge = Callable[[str], Callable[[Any], Any]]
@@ -106,5 +106,5 @@ def test_judge_sees_what_each_check_of_place_prevents(
 
     monkeypatch.setattr(check, "judge", blind)
     places = ("z", "radius", "joint range", "ball joint", "elbow outside")
-    how = {"mode": "edge", "ticks": 150}
+    how = {"mode": "rim", "ticks": 150}
     assert _broken_without(judge, take_ride, how, tuple(expected + place for place in places))
