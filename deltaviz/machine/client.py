@@ -16,7 +16,7 @@ from collections.abc import Generator
 from concurrent.futures import Future
 from dataclasses import replace
 from pathlib import Path
-from typing import Self
+from typing import Any, Self
 from urllib.parse import urlsplit
 
 from deltaviz.link.urls import check_link
@@ -24,7 +24,6 @@ from deltaviz.machine import intent as i
 from deltaviz.machine.frames import FrameReader, FrameWriter
 from deltaviz.machine.loop_stats import LoopStats
 from deltaviz.machine.mode import Mode
-from deltaviz.machine.sentences import NEXT_STEP
 from deltaviz.machine.snapshot import LinkStatus, Snapshot
 from deltaviz.machine.wire import (
     Answered,
@@ -98,7 +97,7 @@ class MachineClient:
         return self._robot
 
     def post(self, intent: i.Intent) -> Future[i.Answer]:
-        future: Future[i.Answer] = Future()
+        future: Future[i.Answer] = _answered_for_certain()
         self._post(intent, future)
         return future
 
@@ -121,7 +120,7 @@ class MachineClient:
 
     def stats(self) -> Future[LoopStats]:
         """The control loop's periods since the last call."""
-        future: Future[LoopStats] = Future()
+        future: Future[LoopStats] = _answered_for_certain()
         self._post(StatsRequest(), future)
         return future
 
@@ -236,6 +235,13 @@ class MachineClient:
             _refuse(future, problem)
 
 
+def _answered_for_certain() -> Future[Any]:
+    """A future that cannot be cancelled: whoever no longer waits must not trip the reader."""
+    future: Future[Any] = Future()
+    future.set_running_or_notify_cancel()
+    return future
+
+
 def _refuse(future: Future[i.Answer] | Future[LoopStats], problem: str) -> None:
     future.set_result(i.Refused(i.RefusalKind.MODE, problem))  # type: ignore[arg-type]
 
@@ -289,7 +295,7 @@ def _starting(setup: Setup, robot: Robot) -> Snapshot:
         stop_reason=None,
         fault=None,
         override=1.0,
-        next_step=NEXT_STEP[Mode.OFFLINE],
+        next_step="Starting; the first start takes longer. Wait until the robot is shown.",
         board_time=None,
         underruns=0,
         counts=None,

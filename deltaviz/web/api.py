@@ -55,13 +55,13 @@ def _add_stops(router: APIRouter, machine: MachinePort) -> None:
     @router.post("/stop")
     async def stop(client: Client) -> models.Taken:
         """Controlled stop, position kept. Anyone's, in every mode, never refused."""
-        machine.stop(client, "Stop over HTTP")
+        machine.stop(client, "Stop was pressed")
         return models.Taken()
 
     @router.post("/estop")
     async def estop(client: Client) -> models.Taken:
         """Drivers off; the homing is lost, and the arms may drop. Anyone's, never refused."""
-        machine.estop(client, "E-stop over HTTP")
+        machine.estop(client, "E-stop was pressed")
         return models.Taken()
 
 

@@ -35,7 +35,7 @@ MESSAGES_BURST, MESSAGES_PER_SECOND = 200.0, 200.0  # a page sends a few a secon
 BEATS_BURST, BEATS_PER_SECOND = 100.0, 100.0  # and 20 signs of life while something is held
 ERRORS_BURST, ERRORS_PER_SECOND = 30.0, 1.0
 _PRESSES_KEPT = 8
-_STOP_PAGE, _ESTOP_PAGE = "Stop on a page", "E-stop on a page"
+_STOP_PAGE, _ESTOP_PAGE = "Stop was pressed", "E-stop was pressed"
 
 Reply = dict[str, Any]
 

@@ -237,3 +237,11 @@ def test_no_descriptor_is_left_open() -> None:
         with MachineClient.start() as client:
             client.ready(PATIENCE)
         assert open_descriptors() == before
+
+
+def test_who_no_longer_waits_for_an_answer_does_not_stop_the_news(machine: MachineClient) -> None:
+    """A web request that was given up cancels what it waits for."""
+    assert not machine.post(i.Enable(ME)).cancel()
+    assert isinstance(machine.post(i.Enable(ME)).result(PATIENCE), i.Accepted)
+    seen = machine.snapshot.board_time or 0.0
+    wait_for(lambda: (machine.snapshot.board_time or 0.0) > seen, "news after the cancelled answer")
