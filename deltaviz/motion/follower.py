@@ -139,10 +139,10 @@ class Follower:
         `override` (0 to 1.5) scales velocities, up to the limits; at 0 the robot comes to rest
         and waits.
         """
+        self._planner.begin()
         if goal != self._goal or override != self._override:
             self._accept(goal, override)
         if not self._settled:
-            self._planner.begin()
             self._replan()
         return self._advance()
 

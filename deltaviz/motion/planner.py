@@ -41,10 +41,11 @@ class Planner:
         self._period = period
         self._clock = clock
         self._budget = budget
+        self._began = 0.0
         self._ends = 0.0
         self._tries = 0
-        self.velocity = 1.0  # shares of the limits that the last plan was made with
-        self.acceleration = 1.0
+        self.velocity: float = 1.0  # shares of the limits that the last plan was made with
+        self.acceleration: float = 1.0
         self.refused: Verdict | None = None  # why the last way was not taken
 
     def begin(self) -> None:
@@ -68,8 +69,8 @@ class Planner:
         velocity = min(1.0, self.velocity * RECOVERY)
         acceleration = min(1.0, self.acceleration * RECOVERY)
         q, v, a = plan.q[at], plan.v[at], plan.a[at]
-        while self._tries < TRIES and self._clock() < self._ends:
-            self._tries += 1
+        before = self._tries
+        while self._may_try():
             rows = self._shapers[space](q, v, a, way, Shares(velocity, acceleration))
             if rows is None:  # a gap in ruckig's solutions: they are small
                 velocity *= NUDGE
@@ -95,7 +96,19 @@ class Planner:
                 acceleration *= share
                 # Part of it comes from turning fast, which only a lower speed helps.
                 velocity *= math.sqrt(share) if self._tries > 1 else 1.0
+        if self._tries > before:  # the next tick goes on from here
+            self.velocity, self.acceleration = velocity / RECOVERY, acceleration / RECOVERY
         return None
+
+    def _may_try(self) -> bool:
+        """Whether there is a try left, and time for one that takes as long as the last."""
+        now = self._clock()
+        last = now - self._began if self._tries > 0 else 0.0
+        if self._tries >= TRIES or now + last >= self._ends:
+            return False
+        self._began = now
+        self._tries += 1
+        return True
 
     def _with_joints(
         self, space: Space, plan: Plan, at: int, rows: tuple[Array, Array, Array]

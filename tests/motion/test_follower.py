@@ -237,6 +237,13 @@ def test_without_time_to_plan_the_committed_plan_goes_on_to_rest(robot: Robot) -
     assert follower.xyz == pytest.approx((-100.0, 0.0, -300.0), abs=1e-6)
 
 
+def test_with_time_for_one_try_in_each_tick_it_still_gets_there(robot: Robot) -> None:
+    ticking = iter(range(10**9))
+    follower = make(robot, (80.0, 0.0, -300.0), clock=lambda: 0.003 * next(ticking), budget=0.004)
+    follow(follower, ToPoint((-80.0, 40.0, -350.0)), 150)  # at full speed it is too fast for arm 1
+    assert follower.xyz == pytest.approx((-80.0, 40.0, -350.0), abs=1e-6)
+
+
 def test_the_same_goals_give_the_same_knots(robot: Robot) -> None:
     goals: list[Goal] = [ToPoint((100.0, 0.0, -300.0)), AtVelocity((0.0, 200.0, 50.0)), Rest()]
 
