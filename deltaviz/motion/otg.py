@@ -62,7 +62,7 @@ class Generator:
         self._control(request.held, request.together)
         try:
             result = self._ruckig.calculate(given, self._trajectory)
-        except _otg.RuckigError:
+        except (_otg.RuckigError, ValueError):  # a ValueError for results that it has no name for
             return None
         if result not in (_otg.Result.Working, _otg.Result.Finished):
             return None

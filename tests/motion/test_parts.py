@@ -109,6 +109,8 @@ def test_axes_that_are_not_held_come_to_rest_where_they_may() -> None:
 def test_limits_that_make_no_sense_give_no_motion() -> None:
     assert Generator(3, 1e-3)(request(max_jerk=np.zeros(3)), 0.01) is None
     assert Generator(3, 1e-3)(request(displacement=np.full(3, np.nan)), 0.01) is None
+    too_slow = request(max_velocity=np.full(3, 1e-6))  # ruckig's result has no name for this
+    assert Generator(3, 1e-3)(too_slow, 0.01) is None
 
 
 @pytest.mark.parametrize("ahead", [(100.0, 0.0, 0.0), (60.0, 60.0, 60.0), (0.0, -90.0, 20.0)])
