@@ -74,7 +74,12 @@ export class Hands {
 
   /** @param {number} pointer */
   drop(pointer) {
-    this.#drag.release(pointer);
+    this.#drag.release(pointer, performance.now());
+  }
+
+  /** The pointer in the scene was taken away, not let go. */
+  loseDrag() {
+    this.#drag.interrupt();
   }
 
   /** Ends the jog, whatever holds it. */
@@ -107,7 +112,7 @@ export class Hands {
   #tick() {
     if (!isPresent() || !this.#connection.open) this.letGo();
     else if (this.#store.age > BLIND_MS) this.endJog();
-    if (this.#jog.held === null && !this.#drag.held) {
+    if (this.#jog.held === null && !this.#drag.beats(performance.now())) {
       clearInterval(this.#timer);
       this.#timer = undefined;
       return;

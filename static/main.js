@@ -170,7 +170,6 @@ function tellTheme() {
 function watchPointer(view, signal) {
   const options = { capture: true, signal };
   view.addEventListener("pointerdown", (event) => hands.grab(event.pointerId), options);
-  for (const type of /** @type {const} */ (["pointerup", "pointercancel"])) {
-    view.addEventListener(type, (event) => hands.drop(event.pointerId), options);
-  }
+  view.addEventListener("pointerup", (event) => hands.drop(event.pointerId), options);
+  view.addEventListener("pointercancel", () => hands.loseDrag(), options);
 }

@@ -90,13 +90,40 @@ def test_a_drag_is_alive_while_the_pointer_is_down(
     page.mouse.down()
     wait_until(lambda: len(machine.messages("drag_alive")) >= 5)
     page.mouse.up()
-    page.wait_for_timeout(100)
+    page.wait_for_timeout(1100)  # the scene's own news of the release may be that late
     count = len(machine.messages("drag_alive"))
     page.wait_for_timeout(300)
     beats = machine.messages("drag_alive")
     assert len(beats) == count
     assert all(set(beat) == {"type", "seq", "t_ms"} for beat in beats)
     assert [b["seq"] for b in beats] == sorted({b["seq"] for b in beats})
+
+
+def test_after_the_release_a_drag_lives_until_the_scene_has_told(
+    page: Page, machine: Any, wait_until: Callable[..., Any]
+) -> None:
+    page.mouse.move(400, 400)
+    page.mouse.down()
+    wait_until(lambda: machine.messages("drag_alive"))
+    page.mouse.up()
+    count = len(machine.messages("drag_alive"))
+    wait_until(lambda: len(machine.messages("drag_alive")) >= count + 5)
+
+
+def test_a_pointer_that_is_taken_away_is_no_release(
+    page: Page, machine: Any, wait_until: Callable[..., Any]
+) -> None:
+    page.mouse.move(400, 400)
+    page.mouse.down()
+    wait_until(lambda: machine.messages("drag_alive"))
+    page.evaluate(
+        "document.querySelector('#scene').contentWindow.dispatchEvent("
+        "new PointerEvent('pointercancel', {pointerId: 1}))"
+    )
+    page.wait_for_timeout(100)
+    count = len(machine.messages("drag_alive"))
+    page.wait_for_timeout(300)
+    assert len(machine.messages("drag_alive")) == count
 
 
 @pytest.mark.parametrize(

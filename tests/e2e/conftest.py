@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import math
 import re
 import signal
+import socket
+import struct
 import subprocess
 import sys
 import time
@@ -17,21 +20,12 @@ from dataclasses import dataclass
 from typing import Any, TypeVar
 
 import pytest
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, Page
 from websockets.sync.client import connect
 
-CHROMIUM = "/usr/bin/chromium"
-CHROMIUM_FLAGS = [
-    "--no-sandbox",
-    "--use-angle=swiftshader",
-    "--enable-unsafe-swiftshader",
-    "--ignore-gpu-blocklist",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-]
 T = TypeVar("T")
 
+TRIES = 12  # of a press that the page may break off by itself
 PATIENCE = 60.0  # s; a condition that has not come true by then never will
 
 
@@ -66,6 +60,17 @@ class Served:
     def wait(self, condition: Callable[[dict[str, Any]], bool], what: str) -> dict[str, Any]:
         """The first state that fulfils the condition."""
         return wait_for(self.state, condition, what)
+
+    def soon(self, condition: Callable[[dict[str, Any]], bool]) -> bool:
+        """Whether a state fulfils the condition before the robot has rested for a while again."""
+        rested = 0
+        while rested < 100:
+            state = self.state()
+            if condition(state):
+                return True
+            rested = rested + 1 if state["mode"] == "idle" else 0
+            time.sleep(0.01)
+        return False
 
     def end(self) -> None:
         self.process.send_signal(signal.SIGTERM)
@@ -180,17 +185,72 @@ def watch(served: Served) -> Iterator[Callable[[], Watcher]]:
         watcher.close()
 
 
+class PageSocket:
+    """What a page says on its socket while it jogs, without a page."""
+
+    def __init__(self, url: str) -> None:
+        self._socket = connect(f"ws{url.removeprefix('http')}/ws", max_queue=None)
+
+    def jog_until(self, condition: Callable[[dict[str, Any]], bool]) -> None:
+        """Hold a jog towards +X until a state fulfils the condition; then say no more."""
+        self._send(type="jog_start", id="press", frame="base", v_mm_s=[100, 0, 0])
+        end = time.monotonic() + PATIENCE
+        seq = 0
+        while time.monotonic() < end:
+            seq += 1
+            now = time.monotonic()
+            self._send(type="jog", id="press", seq=seq, t_ms=1e3 * now, v_mm_s=[100, 0, 0])
+            while time.monotonic() < now + 0.05:
+                message = json.loads(self._socket.recv(timeout=PATIENCE))
+                if message["type"] == "state" and condition(message):
+                    return
+        raise AssertionError("the jog did not begin")
+
+    def _send(self, **message: Any) -> None:
+        self._socket.send(json.dumps(message))
+
+    def reset(self) -> None:
+        """As when the computer is switched off: no closing words."""
+        raw = self._socket.socket
+        raw.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+        raw.close()
+
+    def close(self) -> None:
+        self._socket.close()
+
+
+@pytest.fixture
+def page_socket(served: Served) -> Iterator[PageSocket]:
+    served.wait(lambda s: s["mode"] == "idle", "the start")
+    speaker = PageSocket(served.url)
+    yield speaker
+    with contextlib.suppress(OSError):
+        speaker.close()
+
+
+@pytest.fixture
+def hold(served: Served) -> Callable[..., None]:
+    """Hold a key until the robot does what is wanted.
+
+    A page that cannot keep up with drawing may break its own jog off, and rightly; then the key
+    is pressed afresh, as a person would.
+    """
+
+    def hold_key(page: Page, key: str, condition: Callable[[dict[str, Any]], bool]) -> None:
+        for _ in range(TRIES):
+            page.keyboard.down(key)
+            if served.soon(condition):
+                return
+            page.keyboard.up(key)
+            served.wait(lambda s: s["mode"] == "idle", "rest before the next press")
+        raise AssertionError(f"{key} does not jog as wanted: {served.state()}")
+
+    return hold_key
+
+
 @pytest.fixture(name="wait_for")
 def wait_for_fixture() -> Callable[..., Any]:
     return wait_for
-
-
-@pytest.fixture(scope="session")
-def browser() -> Iterator[Browser]:
-    with sync_playwright() as playwright:
-        chromium = playwright.chromium.launch(executable_path=CHROMIUM, args=CHROMIUM_FLAGS)
-        yield chromium
-        chromium.close()
 
 
 @pytest.fixture

@@ -17,13 +17,11 @@ LONG = 60_000
 
 
 @pytest.fixture
-def jogging(page: Page, served: Any) -> Page:
+def jogging(page: Page, served: Any, hold: Callable[..., Any]) -> Page:
     """A page that holds a jog at speed."""
     page.goto(served.url)
     page.locator("#mode", has_text="Idle").wait_for(timeout=LONG)
-    page.locator("#mode").hover()
-    page.keyboard.down("ArrowRight")
-    served.wait(lambda s: s["mode"] == "jogging" and s["xyz_mm"][0] > 5, "a jog at speed")
+    hold(page, "ArrowRight", lambda s: s["mode"] == "jogging" and s["xyz_mm"][0] > 5)
     return page
 
 
@@ -36,8 +34,17 @@ def rests(served: Any) -> dict[str, Any]:
 
 
 @pytest.mark.browser
-def test_a_browser_that_vanishes_mid_jog(jogging: Page, served: Any) -> None:
+def test_a_page_that_is_closed_mid_jog(jogging: Page, served: Any) -> None:
     jogging.context.close()
+    rests(served)
+
+
+@pytest.mark.parametrize("cut", ["reset", "silence"])
+def test_a_browser_that_vanishes_mid_jog(served: Any, page_socket: Any, cut: str) -> None:
+    """Its connection is reset, or stays open and says no more."""
+    page_socket.jog_until(lambda s: s["mode"] == "jogging" and s["xyz_mm"][0] > 5)
+    if cut == "reset":
+        page_socket.reset()
     assert rests(served)["stop_reason"]
 
 

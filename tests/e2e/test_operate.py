@@ -15,6 +15,7 @@ from playwright.sync_api import Locator, Page
 pytestmark = pytest.mark.browser
 
 LONG = 60_000  # ms; software rendering is slow
+TRIES = 12  # of a drag that the page may break off by itself
 CLOSE = 0.4  # mm: one microstep of each of the three joints
 
 
@@ -54,62 +55,81 @@ def effector_on_page(page: Page) -> tuple[float, float] | None:
 
 
 @pytest.fixture
-def effector(console: Page, wait_for: Callable[..., Any]) -> tuple[float, float]:
-    return wait_for(lambda: effector_on_page(console), bool, "an effector on the screen")
+def drag(console: Page, served: Any, wait_for: Callable[..., Any]) -> Callable[..., None]:
+    """Press on the effector and move it by pixels, until the robot does what is wanted.
+
+    A page that cannot keep up with drawing may break its own drag off, and rightly; then the
+    effector is grabbed afresh, as a person would.
+    """
+
+    def drag_until(
+        dx: float, dy: float, condition: Callable[[dict[str, Any]], bool], *, let_go: bool = False
+    ) -> None:
+        for _ in range(TRIES):
+            x, y = wait_for(lambda: effector_on_page(console), bool, "an effector on the screen")
+            console.mouse.move(x, y)
+            console.mouse.down()
+            console.mouse.move(x + dx / 8, y + dy / 8)
+            if served.soon(lambda s: s["mode"] == "jogging"):
+                console.mouse.move(x + dx, y + dy, steps=4)
+                if let_go:
+                    console.mouse.up()
+                if served.soon(condition):
+                    return
+            console.mouse.up()
+            served.wait(lambda s: s["mode"] == "idle", "rest before the next grab")
+        raise AssertionError(f"the drag does not do what is wanted: {served.state()}")
+
+    return drag_until
 
 
 def test_dragging_the_effector_moves_the_reported_robot(
-    console: Page, served: Any, effector: tuple[float, float]
+    console: Page, served: Any, drag: Callable[..., None]
 ) -> None:
     before = served.state()["xyz_mm"]
-    x, y = effector
-    console.mouse.move(x, y)
-    console.mouse.down()
-    console.mouse.move(x + 90, y, steps=8)
-    moved = served.wait(
+    drag(
+        90,
+        0,
         lambda s: (
             math.dist(s["xyz_mm"], before) > 20
             and math.dist(s["xyz_mm"], s["target_xyz_mm"]) < CLOSE
+            and s["stop_reason"] is None
         ),
-        "the reported robot at the dragged target",
     )
+    moved = served.state()
     assert moved["xyz_mm"][2] == pytest.approx(before[2], abs=CLOSE)  # over the plane
     assert moved["control"]["holder"] == "another"  # the page's, as this program sees it
     console.mouse.up()
     served.wait(lambda s: s["mode"] == "idle", "rest after the drag")
-    assert math.dist(served.state()["xyz_mm"], moved["target_xyz_mm"]) < CLOSE
 
 
 def test_letting_go_early_still_reaches_the_last_target(
-    console: Page, served: Any, effector: tuple[float, float]
+    served: Any, drag: Callable[..., None]
 ) -> None:
-    x, y = effector
     before = served.state()["xyz_mm"]
-    console.mouse.move(x, y)
-    console.mouse.down()
-    console.mouse.move(x - 10, y)
-    served.wait(lambda s: s["mode"] == "jogging", "the grab")
-    console.mouse.move(x - 80, y + 10)
-    console.mouse.up()
-    after = served.wait(
-        lambda s: s["mode"] == "idle" and math.dist(s["xyz_mm"], before) > 10, "the last target"
+    drag(
+        -80,
+        10,
+        lambda s: (
+            s["mode"] == "idle"
+            and s["stop_reason"] is None
+            and math.dist(s["xyz_mm"], before) > 10
+            and math.dist(s["xyz_mm"], s["target_xyz_mm"]) < CLOSE
+        ),
+        let_go=True,
     )
-    assert after["stop_reason"] is None
 
 
 def test_with_shift_the_drag_is_vertical(
-    console: Page, served: Any, effector: tuple[float, float]
+    console: Page, served: Any, drag: Callable[..., None]
 ) -> None:
     before = served.state()["xyz_mm"]
-    x, y = effector
-    console.mouse.move(x, y)
     console.keyboard.down("Shift")
-    console.mouse.down()
-    console.mouse.move(x, y + 60, steps=8)
-    after = served.wait(lambda s: s["xyz_mm"][2] < before[2] - 15, "a lower effector")
+    drag(0, 60, lambda s: s["xyz_mm"][2] < before[2] - 15)
+    after = served.state()["xyz_mm"]
     console.mouse.up()
     console.keyboard.up("Shift")
-    assert after["xyz_mm"][:2] == pytest.approx(before[:2], abs=1.0)
+    assert after[:2] == pytest.approx(before[:2], abs=1.0)
 
 
 def test_an_angle_slider_moves_xyz_and_the_other_way_round(console: Page, served: Any) -> None:
@@ -151,11 +171,11 @@ def expect_slider(page: Page, name: str, value: float) -> None:
     )
 
 
-def test_a_held_key_jogs_and_its_release_stops(console: Page, served: Any) -> None:
+def test_a_held_key_jogs_and_its_release_stops(
+    console: Page, served: Any, hold: Callable[..., Any]
+) -> None:
     before = served.state()["xyz_mm"]
-    console.locator("#mode").hover()
-    console.keyboard.down("ArrowRight")
-    served.wait(lambda s: s["xyz_mm"][0] > before[0] + 10, "a jog towards +X")
+    hold(console, "ArrowRight", lambda s: s["xyz_mm"][0] > before[0] + 10)
     console.keyboard.up("ArrowRight")
     rest = served.wait(lambda s: s["mode"] == "idle", "rest after the release")
     assert rest["stop_reason"] is None  # a release is no stop
@@ -163,22 +183,24 @@ def test_a_held_key_jogs_and_its_release_stops(console: Page, served: Any) -> No
 
 
 def test_a_held_button_jogs_and_a_jog_key_works_inside_the_scene(
-    console: Page, served: Any
+    console: Page, served: Any, hold: Callable[..., Any]
 ) -> None:
     before = served.state()["xyz_mm"]
-    button = console.get_by_role("button", name="Y+", exact=True)
-    button.hover()
-    console.mouse.down()
-    served.wait(lambda s: s["xyz_mm"][1] > before[1] + 5, "a jog towards +Y")
-    console.mouse.up()
+    console.get_by_role("button", name="Y+", exact=True).hover()
+    for _ in range(TRIES):
+        console.mouse.down()
+        moved = served.soon(lambda s: s["xyz_mm"][1] > before[1] + 5)
+        console.mouse.up()
+        if moved:
+            break
+    assert moved
     served.wait(lambda s: s["mode"] == "idle", "rest after the release")
 
     scene = console.locator("#scene").bounding_box()
     assert scene is not None
     console.mouse.click(scene["x"] + scene["width"] - 20, scene["y"] + 20)  # focus into the frame
     middle = served.state()["xyz_mm"]
-    console.keyboard.down("a")
-    served.wait(lambda s: s["xyz_mm"][0] < middle[0] - 5, "a jog towards -X from the frame")
+    hold(console, "a", lambda s: s["xyz_mm"][0] < middle[0] - 5)
     console.keyboard.up("a")
     served.wait(lambda s: s["mode"] == "idle", "rest after the release")
 
@@ -211,17 +233,20 @@ def test_another_robot_is_a_choice_away(console: Page, served: Any) -> None:
     expect_slider(console, "Z mm", state["xyz_mm"][2])
 
 
-def is_an_error(message: Any) -> bool:
+def is_sorter(error: object) -> bool:
     """viser's page tries to compile a sorter that nothing here uses; the policy forbids it."""
-    return message.type == "error" and "'unsafe-eval'" not in message.text
+    return "'unsafe-eval'" in str(error)
 
 
 def test_nothing_goes_wrong_unseen(page: Page, served: Any) -> None:
     """No error in the browser's console, no request to another host, on a first visit."""
     errors: list[str] = []
     hosts: set[str] = set()
-    page.on("console", lambda m: errors.append(m.text) if is_an_error(m) else None)
-    page.on("pageerror", lambda error: errors.append(str(error)))
+    page.on(
+        "console",
+        lambda m: errors.append(m.text) if m.type == "error" and not is_sorter(m.text) else None,
+    )
+    page.on("pageerror", lambda error: errors.append(str(error)) if not is_sorter(error) else None)
     page.on("request", lambda r: hosts.add(r.url.split("/")[2]) if "//" in r.url else None)
     page.goto(served.url)
     slider(page, "θ1").wait_for(timeout=LONG)

@@ -128,6 +128,14 @@ def test_from_rest_the_norms_of_the_limits_are_used_up(
     assert jerk == pytest.approx(space.jerk, rel=0.01)
 
 
+def test_a_long_way_is_taken_in_parts() -> None:
+    slow = Way(np.array([30.0, 40.0, 0.0]), np.array([10.0]))
+    assert slow.within(5.0) is slow
+    part = slow.within(2.0).displacement
+    assert part is not None
+    assert part == pytest.approx([12.0, 16.0, 0.0])
+
+
 # Straight lines.
 
 

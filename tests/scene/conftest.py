@@ -19,7 +19,6 @@ import uvicorn
 import viser
 import zstandard
 from fastapi import FastAPI
-from playwright.sync_api import Browser, sync_playwright
 from websockets.sync.client import ClientConnection, connect
 
 from deltaviz.machine.intent import (
@@ -38,17 +37,6 @@ from deltaviz.mechanism import RotaryDelta
 from deltaviz.robots import Robot, load_robot
 from deltaviz.scene.listener import open_listener
 from deltaviz.scene.view import Scene
-
-CHROMIUM = "/usr/bin/chromium"
-CHROMIUM_ARGS = [
-    "--no-sandbox",
-    "--use-angle=swiftshader",
-    "--enable-unsafe-swiftshader",
-    "--ignore-gpu-blocklist",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-]
 
 
 class FakeMachine:
@@ -363,14 +351,6 @@ def scene_api() -> Iterator[viser.SceneApi]:
 def stand_in(robot: Robot) -> FakeMachine:
     """A machine without a scene."""
     return FakeMachine(robot)
-
-
-@pytest.fixture(scope="session")
-def chromium() -> Iterator[Browser]:
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=CHROMIUM_ARGS)
-        yield browser
-        browser.close()
 
 
 @pytest.fixture

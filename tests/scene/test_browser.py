@@ -22,8 +22,8 @@ PATIENCE = 90_000  # ms; a software renderer on a busy machine
 
 
 @pytest.fixture
-def context(chromium: Browser, stand: Any) -> Iterator[BrowserContext]:
-    context = chromium.new_context(viewport={"width": 740, "height": 520})
+def context(browser: Browser, stand: Any) -> Iterator[BrowserContext]:
+    context = browser.new_context(viewport={"width": 740, "height": 520})
     context.set_default_timeout(PATIENCE)
     context.add_cookies([{"name": "session", "value": "anna", "domain": "127.0.0.1", "path": "/"}])
     yield context
