@@ -211,17 +211,18 @@ class Follower:
             self._settled = not seeker.searching
             return
         speed = self._top(space) * min(1.0, goal.speed * self._override)
-        for place, final in seeker.places(state.q[0], slide=slide):
-            way = Way(place - state.q[0], speed)
+        for place, direct in seeker.places(state.q[0], slide=slide):
             if float(np.linalg.norm(place - state.q[0])) < 1e-6 * space.unit:
                 continue
-            plan = self._planner(space, state, 0, way)
+            plan = self._planner(space, state, 0, Way(place - state.q[0], speed))
             if plan is not None:
                 self._commit(plan)
                 self._failures = 0
-                self._held = not (seeker.exact and final)
-                self._settled = final and not self._planner.eased and not seeker.searching
-                self._wait = REFRESH if final else 0
+                self._held = not (seeker.exact and direct)
+                whole = float(np.linalg.norm(plan.q[-1] - place)) < 1e-6 * space.unit
+                done = direct and whole and not self._planner.eased
+                self._settled = done and not seeker.searching
+                self._wait = REFRESH if direct else 0
                 return
         self._failed()
         if self.resting and slide:

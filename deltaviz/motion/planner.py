@@ -18,6 +18,9 @@ AIM = 0.985  # of a limit: where a slower try should end up
 RESERVE = 0.997  # of the joints' limits: the rest is for rounding to the board's numbers
 TIP_RESERVE = 0.9985  # of the tip's: the rest is for what lies between the knots
 RECOVERY = 1.3  # how much of what was given up is asked for again at the next plan
+PLAN_AHEAD = 2.0  # s of steady motion
+MOST_KNOTS = 400  # of one plan: what asks for more has been slowed down in vain
+SLOWEST = 0.02  # share of the limits below which it begins anew
 NUDGE = 0.98  # to where ruckig may find a solution after all
 BRAKE_SLOWER = 0.6  # a brake that leaves the legal region: go slower by this
 
@@ -65,16 +68,23 @@ class Planner:
         return self.velocity < 1.0 or self.acceleration < 1.0
 
     def __call__(self, space: Space, plan: Plan, at: int, way: Way) -> Plan | None:
-        """A plan along `way` from row `at` of `plan` (of the same space), or None."""
+        """A plan along `way` from row `at` of `plan` (of the same space), or None.
+
+        A way that takes long is planned in part: the plan then ends on it, not at its end.
+        """
         velocity = min(1.0, self.velocity * RECOVERY)
         acceleration = min(1.0, self.acceleration * RECOVERY)
         q, v, a = plan.q[at], plan.v[at], plan.a[at]
         before = self._tries
         while self._may_try():
-            rows = self._shapers[space](q, v, a, way, Shares(velocity, acceleration))
+            part = way.within(PLAN_AHEAD * velocity)
+            rows = self._shapers[space](q, v, a, part, Shares(velocity, acceleration))
             if rows is None:  # a gap in ruckig's solutions: they are small
                 velocity *= NUDGE
                 continue
+            if len(rows[0]) > MOST_KNOTS:
+                velocity = acceleration = 0.0
+                break
             made = self._with_joints(space, plan, at, rows)
             if made is None:
                 return None
@@ -96,7 +106,9 @@ class Planner:
                 acceleration *= share
                 # Part of it comes from turning fast, which only a lower speed helps.
                 velocity *= math.sqrt(share) if self._tries > 1 else 1.0
-        if self._tries > before:  # the next tick goes on from here
+        if min(velocity, acceleration) < SLOWEST:
+            self.velocity = self.acceleration = 1.0
+        elif self._tries > before:  # the next tick goes on from here
             self.velocity, self.acceleration = velocity / RECOVERY, acceleration / RECOVERY
         return None
 

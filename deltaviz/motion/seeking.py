@@ -11,6 +11,7 @@ from deltaviz.motion.space import Space
 LEADS = (4.0, 8.0, 12.0, 24.0)  # mm; steps along the boundary, ahead of the robot
 LEAD_RESERVE = 2.0  # units of margin, about mm, that they keep to limits
 STEPS = 4  # of descent in one tick
+CLOSER = 0.05  # mm; what one tick's steps must gain to move the goal
 BETTER = 0.2  # mm; what a new start must gain to move the goal
 ARRIVED = 0.01  # mm
 
@@ -64,7 +65,7 @@ class Seeker:
         moved = float(np.linalg.norm(self._descending - before)) > 0.01 * self._space.unit
         gained = self._distance(self.goal) - self._distance(self._descending)
         follows = bool(np.array_equal(before, self.goal))
-        better = gained > (0.0 if follows else BETTER * self._space.unit)
+        better = gained > (CLOSER if follows else BETTER) * self._space.unit
         if better:
             self.goal = self._descending
         if not moved:

@@ -8,7 +8,7 @@ no frame.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -34,6 +34,20 @@ class Way:
     displacement: Array | None
     speed: Array
     free: bool = False
+
+    def within(self, seconds: float) -> Way:
+        """The same way, or as much of it as takes about `seconds` at its speed."""
+        if self.displacement is None:
+            return self
+        size = np.abs(self.displacement)
+        if len(self.speed) == 1:
+            size = np.array([np.linalg.norm(size)])
+        time = float(np.max(size / np.maximum(self.speed, 1e-9)))
+        return (
+            self
+            if time <= seconds
+            else replace(self, displacement=self.displacement * (seconds / time))
+        )
 
 
 @dataclass(frozen=True, slots=True)
