@@ -11,6 +11,7 @@ import socket
 import struct
 import subprocess
 import sys
+import threading
 import time
 import urllib.error
 import urllib.request
@@ -21,10 +22,12 @@ from typing import Any, TypeVar
 
 import pytest
 from playwright.sync_api import Browser, Page
+from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
 T = TypeVar("T")
 
+EXPECTED = 8.0  # s; for what mostly takes less than one
 TRIES = 12  # of a press that the page may break off by itself
 PATIENCE = 60.0  # s; a condition that has not come true by then never will
 
@@ -62,9 +65,10 @@ class Served:
         return wait_for(self.state, condition, what)
 
     def soon(self, condition: Callable[[dict[str, Any]], bool]) -> bool:
-        """Whether a state fulfils the condition before the robot has rested for a while again."""
+        """Whether a state fulfils the condition while one would still expect it to."""
+        end = time.monotonic() + EXPECTED
         rested = 0
-        while rested < 100:
+        while rested < 100 and time.monotonic() < end:
             state = self.state()
             if condition(state):
                 return True
@@ -141,13 +145,11 @@ class Watcher:
     def now(self) -> float:
         return time.monotonic()
 
-    def until_cruising(self) -> float:
-        """The speed (mm/s) once it no longer grows: three equal measures of a moving robot."""
-        speeds: deque[float] = deque(maxlen=3)
-        while True:
-            speeds.append(self._speed())
-            if len(speeds) == 3 and min(speeds) > 50 and max(speeds) < 1.05 * min(speeds):
-                return min(speeds)
+    def until_cruising(self, speed: float) -> None:
+        """Three measures in a row within 5 % of the speed (mm/s)."""
+        right = 0
+        while right < 3:
+            right = right + 1 if abs(self._speed() - speed) < 0.05 * speed else 0
 
     def until_slower_than(self, speed: float) -> float:
         """When (s, monotonic) the robot was first seen slower than `speed`."""
@@ -190,42 +192,76 @@ class PageSocket:
 
     def __init__(self, url: str) -> None:
         self._socket = connect(f"ws{url.removeprefix('http')}/ws", max_queue=None)
+        self._presses = 0
+        self._let_go = threading.Event()
+        self._hand: threading.Thread | None = None
 
-    def jog_until(self, condition: Callable[[dict[str, Any]], bool]) -> None:
-        """Hold a jog towards +X until a state fulfils the condition; then say no more."""
-        self._send(type="jog_start", id="press", frame="base", v_mm_s=[100, 0, 0])
-        end = time.monotonic() + PATIENCE
+    def press(self, velocity: list[float]) -> None:
+        """Hold a jog (mm/s), with its signs of life, until `let_go` or `fall_silent`."""
+        self._presses += 1
+        self._let_go.clear()
+        press = f"press-{self._presses}"
+        self._send(type="jog_start", id=press, frame="base", v_mm_s=velocity)
+        self._hand = threading.Thread(target=self._beat, args=(press, velocity), daemon=True)
+        self._hand.start()
+
+    def _beat(self, press: str, velocity: list[float]) -> None:
         seq = 0
-        while time.monotonic() < end:
+        while not self._let_go.wait(0.05):
             seq += 1
-            now = time.monotonic()
-            self._send(type="jog", id="press", seq=seq, t_ms=1e3 * now, v_mm_s=[100, 0, 0])
-            while time.monotonic() < now + 0.05:
-                message = json.loads(self._socket.recv(timeout=PATIENCE))
-                if message["type"] == "state" and condition(message):
-                    return
-        raise AssertionError("the jog did not begin")
+            now = 1e3 * time.monotonic()
+            self._send(type="jog", id=press, seq=seq, t_ms=now, v_mm_s=velocity)
+
+    def fall_silent(self) -> None:
+        """No more signs of life; the socket stays open."""
+        self._let_go.set()
+        if self._hand is not None:
+            self._hand.join()
+
+    def let_go(self) -> None:
+        self.fall_silent()
+        self._send(type="jog_end", id=f"press-{self._presses}")
+
+    def flood(self) -> None:
+        """Say well-formed things as fast as the socket takes them, until it is closed."""
+        threading.Thread(target=self._pour, daemon=True).start()
+
+    def _pour(self) -> None:
+        message = json.dumps(
+            {"type": "jog", "id": "flood", "seq": 1, "t_ms": 0, "v_mm_s": [300, 0, 0]}
+        )
+        with contextlib.suppress(ConnectionClosed, OSError):
+            while True:
+                self._socket.send(message)
 
     def _send(self, **message: Any) -> None:
         self._socket.send(json.dumps(message))
 
     def reset(self) -> None:
         """As when the computer is switched off: no closing words."""
+        self.fall_silent()
         raw = self._socket.socket
         raw.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
         raw.close()
 
     def close(self) -> None:
+        self._let_go.set()
         self._socket.close()
 
 
 @pytest.fixture
-def page_socket(served: Served) -> Iterator[PageSocket]:
+def page_socket(served: Served) -> Iterator[Callable[[], PageSocket]]:
     served.wait(lambda s: s["mode"] == "idle", "the start")
-    speaker = PageSocket(served.url)
-    yield speaker
-    with contextlib.suppress(OSError):
-        speaker.close()
+    speakers: list[PageSocket] = []
+
+    def speak() -> PageSocket:
+        speakers.append(PageSocket(served.url))
+        return speakers[-1]
+
+    yield speak
+    for speaker in speakers:
+        with contextlib.suppress(OSError):
+            speaker.close()
 
 
 @pytest.fixture

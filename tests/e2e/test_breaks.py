@@ -40,11 +40,17 @@ def test_a_page_that_is_closed_mid_jog(jogging: Page, served: Any) -> None:
 
 
 @pytest.mark.parametrize("cut", ["reset", "silence"])
-def test_a_browser_that_vanishes_mid_jog(served: Any, page_socket: Any, cut: str) -> None:
+def test_a_browser_that_vanishes_mid_jog(
+    served: Any, page_socket: Callable[[], Any], cut: str
+) -> None:
     """Its connection is reset, or stays open and says no more."""
-    page_socket.jog_until(lambda s: s["mode"] == "jogging" and s["xyz_mm"][0] > 5)
+    page = page_socket()
+    page.press([100.0, 0.0, 0.0])
+    served.wait(lambda s: s["mode"] == "jogging" and s["xyz_mm"][0] > 5, "a jog at speed")
     if cut == "reset":
-        page_socket.reset()
+        page.reset()
+    else:
+        page.fall_silent()
     assert rests(served)["stop_reason"]
 
 
