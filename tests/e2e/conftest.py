@@ -22,7 +22,6 @@ from typing import Any, TypeVar
 
 import pytest
 from playwright.sync_api import Browser, Page
-from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
 T = TypeVar("T")
@@ -145,11 +144,16 @@ class Watcher:
     def now(self) -> float:
         return time.monotonic()
 
-    def until_cruising(self, speed: float) -> None:
-        """Three measures in a row within 5 % of the speed (mm/s)."""
-        right = 0
+    def until_cruising(self, speed: float) -> bool:
+        """Three measures in a row within 5 % of the speed (mm/s); False if it rests before."""
+        right, began = 0, False
         while right < 3:
-            right = right + 1 if abs(self._speed() - speed) < 0.05 * speed else 0
+            now = self._speed()
+            if began and now == 0.0:
+                return False
+            began = began or now > 0.1 * speed
+            right = right + 1 if abs(now - speed) < 0.05 * speed else 0
+        return True
 
     def until_slower_than(self, speed: float) -> float:
         """When (s, monotonic) the robot was first seen slower than `speed`."""
@@ -222,18 +226,6 @@ class PageSocket:
         self.fall_silent()
         self._send(type="jog_end", id=f"press-{self._presses}")
 
-    def flood(self) -> None:
-        """Say well-formed things as fast as the socket takes them, until it is closed."""
-        threading.Thread(target=self._pour, daemon=True).start()
-
-    def _pour(self) -> None:
-        message = json.dumps(
-            {"type": "jog", "id": "flood", "seq": 1, "t_ms": 0, "v_mm_s": [300, 0, 0]}
-        )
-        with contextlib.suppress(ConnectionClosed, OSError):
-            while True:
-                self._socket.send(message)
-
     def _send(self, **message: Any) -> None:
         self._socket.send(json.dumps(message))
 
@@ -247,6 +239,26 @@ class PageSocket:
     def close(self) -> None:
         self._let_go.set()
         self._socket.close()
+
+
+FLOOD = """
+import sys
+from websockets.sync.client import connect
+message = '{"type": "jog", "id": "flood", "seq": 1, "t_ms": 0, "v_mm_s": [300, 0, 0]}'
+socket = connect(sys.argv[1], max_queue=None)
+while True:
+    socket.send(message)
+"""
+
+
+@pytest.fixture
+def flood(served: Served) -> Iterator[None]:
+    """A client that says well-formed things as fast as its socket takes them."""
+    url = f"ws{served.url.removeprefix('http')}/ws"
+    with subprocess.Popen([sys.executable, "-c", FLOOD, url], stderr=subprocess.DEVNULL) as client:
+        yield
+        assert client.poll() is None, "the flood ended before the test"
+        client.kill()
 
 
 @pytest.fixture
