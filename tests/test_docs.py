@@ -1,0 +1,32 @@
+"""What the docs take from the code is today's."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+
+
+def test_the_generated_parts_are_todays() -> None:
+    check = [sys.executable, ROOT / "docs" / "generate.py", "--check"]
+    done = subprocess.run(check, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_a_stale_part_is_seen(tmp_path: Path) -> None:
+    for name in ("generate.py", "architecture.md"):
+        (tmp_path / name).write_text((ROOT / "docs" / name).read_text())
+    page = tmp_path / "architecture.md"
+    page.write_text(page.read_text().replace("idle -->", "idle ..>"))
+    check = [sys.executable, tmp_path / "generate.py", "--check"]
+    done = subprocess.run(check, capture_output=True, text=True)
+    assert done.returncode == 1
+    assert "architecture.md" in done.stdout
+
+
+def test_every_picture_and_page_that_is_linked_exists() -> None:
+    text = (ROOT / "README.md").read_text()
+    for link in (part.split(")")[0] for part in text.split("](")[1:]):
+        assert (ROOT / link).exists(), link
