@@ -62,6 +62,15 @@ def test_a_page_that_hangs_mid_jog(jogging: Page, served: Any) -> None:
 
 
 @pytest.mark.browser
+def test_a_page_that_loses_the_focus_mid_jog(jogging: Page, served: Any) -> None:
+    """The key stays down; what the browser tells is all that changes."""
+    jogging.evaluate(
+        "() => { document.hasFocus = () => false; window.dispatchEvent(new Event('blur')); }"
+    )
+    rests(served)
+
+
+@pytest.mark.browser
 def test_a_page_that_goes_elsewhere_mid_jog(jogging: Page, served: Any) -> None:
     jogging.goto("about:blank")
     rests(served)
