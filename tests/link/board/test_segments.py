@@ -171,7 +171,7 @@ def test_the_next_segment_one_tick_before_the_end_is_in_time(bench):
     bench.segment([4.8, 100], [0, 0])
     bench.run(20)
     assert bench.board.state is BoardState.ARMED
-    assert bench.board.counts == (4, 100)
+    assert bench.board.counts == (5, 100)  # the nearest to 4.8
 
 
 def test_indices_wrap():
