@@ -1,4 +1,4 @@
-"""The real browser that every folder's tests share: a process can drive only one at a time."""
+"""The real browser. One a module: while it runs, no other event loop can run beside it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ CHROMIUM_FLAGS = [
 ]
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
     with sync_playwright() as playwright:
         chromium = playwright.chromium.launch(executable_path=CHROMIUM, args=CHROMIUM_FLAGS)

@@ -243,7 +243,7 @@ def url(served: tuple[Machine, str]) -> str:
     return served[1]
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def context(browser: Browser) -> Callable[..., BrowserContext]:
     """One context for each set of options: making one takes longer than most tests."""
 
