@@ -9,7 +9,7 @@ import sys
 import time
 import urllib.request
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 from playwright.sync_api import Browser, Page, sync_playwright
 
@@ -71,6 +71,7 @@ def go(page: Page, url: str, x: float, y: float) -> None:
             body: JSON.stringify({xyz_mm: [x, y, z], speed: 0.5})})""",
         [x, y, HEIGHT],
     )
+    state: dict[str, Any] = {}
     end = time.monotonic() + 30
     while time.monotonic() < end:
         with urllib.request.urlopen(f"{url}/api/state") as reply:

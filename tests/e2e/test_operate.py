@@ -175,6 +175,7 @@ def test_a_held_key_jogs_and_its_release_stops(
     console: Page, served: Any, hold: Callable[..., Any]
 ) -> None:
     before = served.state()["xyz_mm"]
+    rest: dict[str, Any] = {}
     for _ in range(TRIES):
         start = served.state()["xyz_mm"][0]
         hold(console, "ArrowRight", lambda s, start=start: s["xyz_mm"][0] > start + 5)
@@ -191,6 +192,7 @@ def test_a_held_button_jogs_and_a_jog_key_works_inside_the_scene(
 ) -> None:
     before = served.state()["xyz_mm"]
     console.get_by_role("button", name="Y+", exact=True).hover()
+    moved = False
     for _ in range(TRIES):
         console.mouse.down()
         moved = served.soon(lambda s: s["xyz_mm"][1] > before[1] + 5)
