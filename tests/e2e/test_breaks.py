@@ -111,16 +111,22 @@ def gone(pid: int) -> bool:
         return True
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT, signal.SIGKILL])
-def test_the_server_is_ended_mid_move(
-    serve: Callable[..., Any], wait_for: Callable[..., Any], number: signal.Signals
-) -> None:
+def start_moving(serve: Callable[..., Any]) -> tuple[Any, dict[int, str]]:
+    """A server whose robot is in the middle of a move, and the processes below it."""
     served = serve()
     served.wait(lambda s: s["mode"] == "idle", "the start")
     below = processes_below(served.process.pid)
     assert len(below) >= 2, "a controller and a board"
     assert served.post("/api/move", {"xyz_mm": [100, 0, -300], "speed": 0.3}) == 202
     served.wait(lambda s: s["mode"] == "moving", "the move")
+    return served, below
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT, signal.SIGKILL])
+def test_the_server_is_ended_mid_move(
+    serve: Callable[..., Any], wait_for: Callable[..., Any], number: signal.Signals
+) -> None:
+    served, below = start_moving(serve)
     served.process.send_signal(number)
     status = served.process.wait(timeout=20)
     assert status == (-number if number is signal.SIGKILL else 0)
@@ -132,11 +138,7 @@ def test_the_server_is_ended_mid_move(
 def test_ctrl_c_in_a_terminal_goes_to_every_process(
     serve: Callable[..., Any], wait_for: Callable[..., Any]
 ) -> None:
-    served = serve()
-    served.wait(lambda s: s["mode"] == "idle", "the start")
-    below = processes_below(served.process.pid)
-    assert served.post("/api/move", {"xyz_mm": [100, 0, -300], "speed": 0.3}) == 202
-    served.wait(lambda s: s["mode"] == "moving", "the move")
+    served, below = start_moving(serve)
     os.killpg(served.process.pid, signal.SIGINT)
     assert served.process.wait(timeout=20) == 0
     wait_for(
@@ -149,11 +151,7 @@ def test_the_controller_dies_mid_move(
     serve: Callable[..., Any], wait_for: Callable[..., Any]
 ) -> None:
     """The page says what happened; the server itself answers on."""
-    served = serve()
-    served.wait(lambda s: s["mode"] == "idle", "the start")
-    below = processes_below(served.process.pid)
-    assert served.post("/api/move", {"xyz_mm": [100, 0, -300], "speed": 0.3}) == 202
-    served.wait(lambda s: s["mode"] == "moving", "the move")
+    served, below = start_moving(serve)
     for pid in below:
         os.kill(pid, signal.SIGKILL)
     state = served.wait(lambda s: s["mode"] == "offline", "the loss")
