@@ -5,11 +5,14 @@
  * @typedef {(view: Window, signal: AbortSignal) => void} Watcher
  */
 
+import { sceneAddress } from "./scene-address.js";
+
 export class SceneFrame {
   #element;
   #watchers;
   #loaded = new AbortController();
   #reloaded;
+  #loading = false;
 
   /**
    * @param {HTMLIFrameElement} element
@@ -21,7 +24,7 @@ export class SceneFrame {
     this.#watchers = watchers;
     this.#reloaded = reloaded;
     element.addEventListener("load", () => this.#attach());
-    if (this.document?.readyState === "complete") this.#attach();
+    this.#load();
   }
 
   /** @returns {Document | null} null while an error page stands in the frame */
@@ -36,10 +39,16 @@ export class SceneFrame {
 
   /** Loads the scene again if an error page stands in its place. */
   mend() {
-    if (this.document === null) this.#element.src = "/scene/";
+    if (this.document === null && !this.#loading) this.#load();
+  }
+
+  #load() {
+    this.#loading = true;
+    this.#element.src = sceneAddress();
   }
 
   #attach() {
+    this.#loading = false;
     this.#loaded.abort();
     this.#loaded = new AbortController();
     this.#reloaded();

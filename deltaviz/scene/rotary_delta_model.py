@@ -77,9 +77,7 @@ class RotaryDeltaModel:
         return all(abs(a - b) < _SAME for a, b in zip(shown, wanted, strict=True))
 
     def _add(self, name: str, shape: Shape, colour: colours.Colour) -> viser.MeshHandle:
-        part = self._scene.add_mesh_simple(
-            name, shape.vertices, shape.faces, color=colour, side="double"
-        )
+        part = self._scene.add_mesh_simple(name, shape.vertices, shape.faces, color=colour)
         self._solid.append(part)
         return part
 
@@ -111,13 +109,19 @@ class RotaryDeltaModel:
         root = f"/robot/arm{arm}"
         self._add(f"{root}/beam", beam, colours.UPPER_ARM)
         hub = shapes.cylinder(0.185 * unit, -0.1 * unit, 0.1 * unit, bevel=0.02 * unit)
-        shaft = shapes.cylinder(0.032 * unit, -d.rod_spacing, d.rod_spacing)
+        shaft = self._shaft()
         elbow = shaft.turned(_SIDEWAYS) + self._balls()
         self._joints.append(
             (
                 self._add(f"{root}/hub", hub.turned(_SIDEWAYS), colours.STEEL),
                 self._add(f"{root}/elbow", elbow.moved((length, 0.0, 0.0)), colours.STEEL),
             )
+        )
+
+    def _shaft(self) -> Shape:
+        d = self._size
+        return shapes.cylinder(
+            0.032 * d.thickness, -d.rod_spacing, d.rod_spacing, segments=shapes.THIN_SEGMENTS
         )
 
     def _balls(self) -> Shape:
@@ -130,15 +134,16 @@ class RotaryDeltaModel:
         thin, thick, socket = 0.026 * unit, 0.046 * unit, 0.13 * unit
         rod = shapes.lathe(
             [
-                (0.0, 0.0),
-                (thick, -0.03 * unit),
-                (thick, -socket),
-                (thin, -1.35 * socket),
-                (thin, 1.35 * socket - length),
-                (thick, socket - length),
-                (thick, 0.03 * unit - length),
                 (0.0, -length),
-            ]
+                (thick, 0.03 * unit - length),
+                (thick, socket - length),
+                (thin, 1.35 * socket - length),
+                (thin, -1.35 * socket),
+                (thick, -socket),
+                (thick, -0.03 * unit),
+                (0.0, 0.0),
+            ],
+            segments=shapes.THIN_SEGMENTS,
         )
         for k in range(2):
             self._add(f"/robot/forearm{arm}/rod{k}/rod", rod, colours.ROD)
@@ -153,8 +158,7 @@ class RotaryDeltaModel:
             shapes.plate(outline, hole, -half, half, bevel=0.3 * half),
             colours.EFFECTOR,
         )
-        shaft = shapes.cylinder(0.032 * unit, -d.rod_spacing, d.rod_spacing).turned(_SIDEWAYS)
-        wrist = shaft + self._balls()
+        wrist = self._shaft().turned(_SIDEWAYS) + self._balls()
         self._add(
             "/robot/effector/wrists",
             shapes.joined(
@@ -171,12 +175,12 @@ class RotaryDeltaModel:
     def _tool(self, hole: float, half: float) -> Shape:
         """A collar in the plate's hole, and a cone to the tool tip if that is below it."""
         collar = shapes.lathe(
-            [(hole, half), (1.12 * hole, half), (1.12 * hole, -half), (hole, -half), (hole, half)]
+            [(hole, half), (hole, -half), (1.12 * hole, -half), (1.12 * hole, half), (hole, half)]
         )
         x, y, z = self._size.tool_offset
         if z > -2 * half:
             return collar
-        cone = shapes.lathe([(0.0, half), (0.9 * hole, half), (0.9 * hole, -half), (0.0, z)])
+        cone = shapes.lathe([(0.0, z), (0.9 * hole, -half), (0.9 * hole, half), (0.0, half)])
         return collar + cone.moved((x, y, 0.0))
 
     def _add_ghost(self) -> None:

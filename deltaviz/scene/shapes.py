@@ -18,7 +18,9 @@ from numpy.typing import NDArray
 from deltaviz.scene.rotations import matrix
 from deltaviz.scene.units import Array
 
-SEGMENTS = 36
+# Few enough that a computer without a graphics card keeps up; shading rounds the rest.
+SEGMENTS = 24
+THIN_SEGMENTS = 12
 
 
 @dataclass(frozen=True)
@@ -62,24 +64,20 @@ def lathe(
     return loft(rings, smooth=smooth)
 
 
-def cylinder(radius: float, z_from: float, z_to: float, *, bevel: float = 0.0) -> Shape:
+def cylinder(
+    radius: float, z_from: float, z_to: float, *, bevel: float = 0.0, segments: int = SEGMENTS
+) -> Shape:
     """A closed cylinder about the z axis, z_from below z_to."""
-    return lathe(
-        [
-            (0.0, z_from),
-            (radius - bevel, z_from),
-            (radius, z_from + bevel),
-            (radius, z_to - bevel),
-            (radius - bevel, z_to),
-            (0.0, z_to),
-        ]
-    )
+    side = [(radius, z_from + bevel), (radius, z_to - bevel)]
+    if bevel:
+        side = [(radius - bevel, z_from), *side, (radius - bevel, z_to)]
+    return lathe([(0.0, z_from), *side, (0.0, z_to)], segments=segments)
 
 
 def sphere(radius: float) -> Shape:
-    angles = np.linspace(-math.pi / 2, math.pi / 2, 11)
+    angles = np.linspace(-math.pi / 2, math.pi / 2, 8)
     profile = [(radius * math.cos(a), radius * math.sin(a)) for a in angles]
-    return lathe(profile, smooth=True, segments=20)
+    return lathe(profile, smooth=True, segments=THIN_SEGMENTS)
 
 
 def beam(length: float, root: tuple[float, float], tip: tuple[float, float]) -> Shape:
@@ -93,9 +91,10 @@ def beam(length: float, root: tuple[float, float], tip: tuple[float, float]) -> 
         x = np.full(SEGMENTS, share * length)
         return np.stack((x, y * width * scale, z * height * scale), axis=-1)
 
-    body = loft([section(share) for share in np.linspace(0.0, 1.0, 9)], smooth=True)
-    ends = (loft([section(share, 0.0), section(share)]) for share in (0.0, 1.0))
-    return joined(body, *ends)
+    body = loft([section(share) for share in np.linspace(0.0, 1.0, 3)], smooth=True)
+    root_end = loft([section(0.0, 0.0), section(0.0)])
+    tip_end = loft([section(1.0), section(1.0, 0.0)])
+    return joined(body, root_end, tip_end)
 
 
 def plate(outline: Array, hole: float, z_from: float, z_to: float, *, bevel: float = 0.0) -> Shape:
@@ -121,7 +120,7 @@ def plate(outline: Array, hole: float, z_from: float, z_to: float, *, bevel: flo
     return loft(rings)
 
 
-def hull_outline(centres: Array, radius: float, *, points: int = 120) -> Array:
+def hull_outline(centres: Array, radius: float, *, points: int = 72) -> Array:
     """Radii, over equal angles from +x, of the convex hull of discs around the origin.
 
     `centres` (n, 2). The hull's support in direction u is h(u) = max c·u + radius, and its

@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 import uvicorn
 from playwright.sync_api import Browser, BrowserContext, Page
+from playwright.sync_api import Error as PlaywrightError
 from starlette.applications import Starlette
 from starlette.requests import Request
 from starlette.responses import HTMLResponse, JSONResponse, Response
@@ -37,6 +38,23 @@ window.heard = [];
 for (const type of ["keydown", "keyup"])
   window.addEventListener(type, (e) => window.heard.push(type + " " + e.code));
 </script>"""
+
+# A page that gets no time for longer than the lease has rightly let go of everything.
+NAP_MS = 120
+WATCH_FOR_NAPS = """(() => {
+  let last = performance.now();
+  window.longestNap = 0;
+  setInterval(() => {
+    const now = performance.now();
+    window.longestNap = Math.max(window.longestNap, now - last - 20);
+    last = now;
+  }, 20);
+})()"""
+
+
+class PageSlept(Exception):
+    """The test says nothing: its page was not given the time to do what was asked of it."""
+
 
 READY: dict[str, Any] = {
     "mode": "idle",
@@ -255,11 +273,36 @@ def context(browser: Browser) -> Callable[..., BrowserContext]:
 
 
 @pytest.fixture
+def pages() -> list[Page]:
+    """The pages that the test has open."""
+    return []
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call(item: pytest.Item) -> Any:
+    """A failure on a page that slept is a PageSlept, for which pytest runs the test again."""
+    try:
+        return (yield)
+    except AssertionError as error:
+        naps = [nap_ms(page) for page in getattr(item, "funcargs", {}).get("pages", [])]
+        if max(naps, default=0) > NAP_MS:
+            raise PageSlept(f"for {max(naps):.0f} ms") from error
+        raise
+
+
+def nap_ms(page: Page) -> float:
+    """The longest time for which the page's main thread did not run, since it was loaded."""
+    try:
+        return page.evaluate("window.longestNap ?? 0")
+    except PlaywrightError:  # closed by the test
+        return 0.0
+
+
+@pytest.fixture
 def open_page(
-    context: Callable[..., BrowserContext], machine: Machine, url: str
+    context: Callable[..., BrowserContext], machine: Machine, url: str, pages: list[Page]
 ) -> Iterator[Callable[..., Page]]:
     """Opens the console, connected and drawn; fails the test on any error on the page."""
-    pages: list[Page] = []
     errors: list[str] = []
 
     def keep_violation(text: str) -> None:
@@ -272,11 +315,15 @@ def open_page(
         pages.append(page)
         page.on("pageerror", lambda error: errors.append(str(error)))
         page.on("console", lambda message: keep_violation(message.text))
+        page.add_init_script(WATCH_FOR_NAPS)
         page.goto(url + "/")
         page.wait_for_selector("#pad button")
         until(lambda: page.evaluate("!document.querySelector('#control').disabled"))
         page.wait_for_selector("#sliders input", state="attached")
         page.frame_locator("#scene").locator("body").wait_for()
+        page.bring_to_front()
+        until(lambda: page.evaluate("document.hasFocus()"))
+        page.evaluate("window.longestNap = 0")  # what it took to start is no concern of a test
         return page
 
     yield open_
