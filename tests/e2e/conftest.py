@@ -114,6 +114,16 @@ def start_server(*arguments: str) -> Served:
     raise AssertionError(f"the server did not start: {''.join(lines)}")
 
 
+@pytest.fixture(scope="session", autouse=True)
+def _compiled() -> None:
+    """The kernels are compiled once a machine: no test is to wait for that."""
+    program = (
+        "from deltaviz import load_robot; from deltaviz.machine.drive import warm_up;"
+        "warm_up(load_robot('stm32'))"
+    )
+    subprocess.run([sys.executable, "-c", program], check=True)
+
+
 @pytest.fixture
 def serve() -> Iterator[Callable[..., Served]]:
     """Start servers that end with the test."""
@@ -144,6 +154,12 @@ class Watcher:
     def now(self) -> float:
         return time.monotonic()
 
+    def forget_until(self, board_time: float) -> None:
+        """Read on to the first state after `board_time`: what came while nobody looked is past."""
+        self._seen.clear()
+        while self._next()[0] <= board_time:
+            pass
+
     def until_cruising(self, speed: float) -> bool:
         """Three measures in a row within 5 % of the speed (mm/s); False if it rests before."""
         right, began = 0, False
@@ -165,14 +181,18 @@ class Watcher:
         """Of the reported tip, over the last 20 ms of board time at least."""
         end = self.now() + PATIENCE
         while self.now() < end:
-            state = json.loads(self._socket.recv(timeout=PATIENCE))
-            if state.get("type") != "state" or state["board_time_s"] is None:
-                continue
-            self._seen.append((state["board_time_s"], state["xyz_mm"]))
+            self._seen.append(self._next())
             for board_time, xyz in reversed(self._seen):
                 if (passed := self._seen[-1][0] - board_time) >= 0.02:
                     return math.dist(xyz, self._seen[-1][1]) / passed
         raise AssertionError("the board's time stands still")
+
+    def _next(self) -> tuple[float, list[float]]:
+        """Board time (s) and pose of the next state."""
+        while True:
+            state = json.loads(self._socket.recv(timeout=PATIENCE))
+            if state.get("type") == "state" and state["board_time_s"] is not None:
+                return state["board_time_s"], state["xyz_mm"]
 
     def close(self) -> None:
         self._socket.close()

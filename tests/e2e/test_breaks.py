@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Page
 
-LONG = 60_000
+LONG = 120_000
 
 
 @pytest.fixture

@@ -14,7 +14,7 @@ from playwright.sync_api import Locator, Page
 
 pytestmark = pytest.mark.browser
 
-LONG = 60_000  # ms; software rendering is slow
+LONG = 120_000  # ms; software rendering is slow
 TRIES = 12  # of a drag that the page may break off by itself
 CLOSE = 0.4  # mm: one microstep of each of the three joints
 
