@@ -95,6 +95,20 @@ class TelemetryFlags(IntFlag):
     CONFIGURED = 8
 
 
+class RobotKind(IntEnum):
+    """Which forward kinematics the board guards the workspace with."""
+
+    JOINTS_ONLY = 0
+    ROTARY_DELTA = 1
+
+
+class Options(IntFlag):
+    NONE = 0
+    HOMING_TOGETHER = 1
+    SWITCH_ACTIVE_OPEN = 2
+    ENABLE_ACTIVE_HIGH = 4
+
+
 # Host to board.
 
 
