@@ -43,7 +43,7 @@ def test_a_codec_that_was_edited_by_hand_is_noticed(tmp_path, monkeypatch, capsy
     [["gcc"], ["arm-none-eabi-gcc", "-mcpu=cortex-m4", "-mfloat-abi=hard", "-mfpu=fpv4-sp-d16"]],
     ids=lambda compiler: compiler[0],
 )
-@pytest.mark.parametrize("name", ["messages.c"])
+@pytest.mark.parametrize("name", ["messages.c", "frames.c"])
 def test_it_compiles_without_a_warning(tmp_path, compiler, name):
     command = [*compiler, *FLAGS, "-O2", "-c", str(generate.CORE / name), "-o"]
     done = subprocess.run([*command, str(tmp_path / "it.o")], capture_output=True, text=True)
