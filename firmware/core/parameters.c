@@ -1,0 +1,138 @@
+#include "parameters.h"
+
+#include "kinematics.h"
+
+#include <math.h>
+
+#define TO_Q32 8 /* from 2^-24 */
+#define LEAST_ACCELERATION 256 /* 2^-24 microsteps/ms²: 2^16 in those of the brake */
+#define BRAKE_MS_MAX 1000
+
+static const float PER_SECOND = 1000.0f / 65536.0f; /* microsteps/s in 2^-16 microsteps/ms */
+static const float PER_SECOND2 = 1e6f / 16777216.0f; /* microsteps/s² in 2^-24 microsteps/ms² */
+
+static bool finite_numbers(const float *values, int count)
+{
+    for (int i = 0; i < count; i++) {
+        if (!isfinite(values[i])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool speeds_make_sense(const struct dv_configure *c, int joint, uint32_t tick_hz)
+{
+    uint64_t velocity = c->velocity[joint], acceleration = c->acceleration[joint];
+    return velocity > 0 && c->unhomed_velocity[joint] > 0 && c->homing_fast[joint] > 0
+        && c->homing_slow[joint] > 0
+        && velocity * 2000u <= (uint64_t)tick_hz << 16 /* a step every other tick */
+        && acceleration >= LEAST_ACCELERATION && velocity << 8 <= acceleration * BRAKE_MS_MAX;
+}
+
+static bool joint_makes_sense(const struct dv_configure *c, int joint, uint32_t tick_hz)
+{
+    int64_t ready = (int64_t)c->ready[joint] * 1024;
+    float per_rad = c->microsteps_per_rad[joint];
+    return c->joint_min[joint] < c->joint_max[joint] && c->joint_min[joint] <= ready
+        && ready <= c->joint_max[joint] && per_rad > 0.0f && isfinite(per_rad)
+        && c->homing_backoff[joint] > 0 && c->homing_max_travel[joint] > 0
+        && speeds_make_sense(c, joint, tick_hz);
+}
+
+static bool range_makes_sense(const float range[2])
+{
+    return range[0] < range[1]; /* either may be infinite, neither may be no number */
+}
+
+static bool geometry_makes_sense(const struct dv_configure *c)
+{
+    if (c->kind == DV_KIND_JOINTS_ONLY) {
+        return true;
+    }
+    if (c->kind != DV_KIND_ROTARY_DELTA || c->joints != DV_ARMS) {
+        return false;
+    }
+    for (int i = 0; i < DV_ARMS; i++) {
+        if (!(c->upper_arm[i] > 0.0f && c->forearm[i] > 0.0f)) {
+            return false;
+        }
+    }
+    return finite_numbers(c->base_radius, DV_ARMS) && finite_numbers(c->effector_radius, DV_ARMS)
+        && finite_numbers(c->upper_arm, DV_ARMS) && finite_numbers(c->forearm, DV_ARMS)
+        && finite_numbers(c->azimuth, DV_ARMS);
+}
+
+static bool makes_sense(const struct dv_configure *c, uint32_t tick_hz)
+{
+    if (tick_hz < DV_TICK_HZ_MIN || tick_hz > DV_TICK_HZ_MAX || c->joints < 1
+        || c->joints > DV_JOINTS_MAX || (c->homing_direction != 1 && c->homing_direction != -1)) {
+        return false;
+    }
+    for (int joint = 0; joint < c->joints; joint++) {
+        if (!joint_makes_sense(c, joint, tick_hz)) {
+            return false;
+        }
+    }
+    return finite_numbers(c->tool_offset, 3) && range_makes_sense(c->workspace_x)
+        && range_makes_sense(c->workspace_y) && range_makes_sense(c->workspace_z)
+        && c->workspace_radius > 0.0f && geometry_makes_sense(c);
+}
+
+static void take_limits(struct dv_parameters *parameters)
+{
+    const struct dv_configure *c = &parameters->configure;
+    for (int joint = 0; joint < c->joints; joint++) {
+        parameters->accelerations[joint] = (int64_t)c->acceleration[joint] << TO_Q32;
+        parameters->acceleration[joint] = (float)c->acceleration[joint] * PER_SECOND2;
+        parameters->velocity[joint] = (float)c->velocity[joint] * PER_SECOND;
+        parameters->unhomed_velocity[joint] =
+            fminf((float)c->unhomed_velocity[joint] * PER_SECOND, parameters->velocity[joint]);
+    }
+}
+
+static void take_geometry(struct dv_parameters *parameters)
+{
+    const struct dv_configure *c = &parameters->configure;
+    parameters->arms = DV_ARMS;
+    for (int i = 0; i < DV_ARMS; i++) {
+        parameters->arm[i] = (struct dv_delta_arm){
+            .offset = c->base_radius[i] - c->effector_radius[i],
+            .upper_arm = c->upper_arm[i],
+            .forearm = c->forearm[i],
+            .cos_azimuth = cosf(c->azimuth[i]),
+            .sin_azimuth = sinf(c->azimuth[i]),
+        };
+    }
+    const struct dv_delta_arm *a = &parameters->arm[0], *b = &parameters->arm[1],
+                              *d = &parameters->arm[2];
+    float turned = (a->cos_azimuth * b->sin_azimuth - a->sin_azimuth * b->cos_azimuth)
+        + (b->cos_azimuth * d->sin_azimuth - b->sin_azimuth * d->cos_azimuth)
+        + (d->cos_azimuth * a->sin_azimuth - d->sin_azimuth * a->cos_azimuth);
+    parameters->handedness = copysignf(1.0f, turned);
+}
+
+static bool ready_pose_has_a_tip(const struct dv_parameters *parameters)
+{
+    const struct dv_configure *c = &parameters->configure;
+    float theta[DV_ARMS], tip[3];
+    for (int i = 0; i < DV_ARMS; i++) {
+        theta[i] = (float)c->ready[i] / c->microsteps_per_rad[i];
+    }
+    return dv_forward(parameters, theta, tip);
+}
+
+bool dv_parameters_from(struct dv_parameters *parameters, const struct dv_configure *configure,
+                        uint32_t tick_hz)
+{
+    *parameters = (struct dv_parameters){.configure = *configure, .handedness = 1.0f};
+    if (!makes_sense(configure, tick_hz)) {
+        return false;
+    }
+    take_limits(parameters);
+    if (configure->kind == DV_KIND_JOINTS_ONLY) {
+        return true;
+    }
+    take_geometry(parameters);
+    return ready_pose_has_a_tip(parameters);
+}

@@ -1,0 +1,40 @@
+/* A configuration as the board works with it: checked once, with all that follows from it. */
+#ifndef DV_PARAMETERS_H
+#define DV_PARAMETERS_H
+
+#include "messages.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#define DV_ARMS 3 /* of a rotary delta */
+
+#define DV_TICK_HZ_MIN 1000u
+#define DV_TICK_HZ_MAX 1000000u /* up to here the arithmetic of `dv_joint_cubic` fits 64 bits */
+
+struct dv_delta_arm {
+    float offset; /* base radius minus effector radius, mm */
+    float upper_arm; /* mm */
+    float forearm; /* mm */
+    float cos_azimuth;
+    float sin_azimuth;
+};
+
+struct dv_parameters {
+    struct dv_configure configure; /* as accepted */
+    int64_t accelerations[DV_JOINTS_MAX]; /* 2^-32 microsteps/ms² */
+    float acceleration[DV_JOINTS_MAX]; /* microsteps/s² */
+    float velocity[DV_JOINTS_MAX]; /* microsteps/s */
+    float unhomed_velocity[DV_JOINTS_MAX]; /* microsteps/s, at most `velocity` */
+    uint8_t arms; /* DV_ARMS, or 0: guarded by its joints alone */
+    float handedness; /* +1: the arms stand counter-clockwise in their order, else -1 */
+    struct dv_delta_arm arm[DV_ARMS];
+};
+
+/* False for a configuration that makes no sense, or asks for more than a step every other tick,
+ * or for a brake of more than a second. `parameters` are then not to be used.
+ */
+bool dv_parameters_from(struct dv_parameters *parameters, const struct dv_configure *configure,
+                        uint32_t tick_hz);
+
+#endif
