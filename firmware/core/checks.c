@@ -2,6 +2,7 @@
 
 #include "joint_cubic.h"
 #include "kinematics.h"
+#include "to_float.h"
 
 #include <math.h>
 
@@ -72,7 +73,7 @@ static void find_brake_ends(struct motion *motion)
 static float room(int32_t limit, int32_t start, int sign)
 {
     int64_t distance = sign * ((int64_t)limit - start) + JOINT_SLACK;
-    return (float)(distance > 0 ? distance : 0) * P_STEP + POSITION_ERROR;
+    return dv_to_float(distance > 0 ? distance : 0) * P_STEP + POSITION_ERROR;
 }
 
 static struct dv_objection joint_objection(const struct motion *motion)
@@ -133,7 +134,7 @@ static struct dv_objection workspace_objection(const struct motion *motion)
             continue;
         }
         allowed = allowed < 0.0f ? outside(motion, START) : allowed;
-        if (far > allowed + TIP_SLACK + 2.0f * TIP_ERROR) {
+        if (far > allowed + TIP_SLACK + TIP_ERROR) {
             return objection(i < 2 ? DV_REFUSAL_WORKSPACE : DV_REFUSAL_BRAKE, -1);
         }
     }

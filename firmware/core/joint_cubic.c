@@ -1,5 +1,7 @@
 #include "joint_cubic.h"
 
+#include "to_float.h"
+
 #include <math.h>
 
 static const float P_STEP = 1.0f / 1024.0f; /* microsteps: the unit of a knot's position */
@@ -18,11 +20,11 @@ struct dv_joint_cubic dv_joint_cubic(int32_t p0, int32_t p1, int32_t v0, int32_t
     int64_t mean = 6 * 64 * distance * (int64_t)tick_hz;
     int64_t time = 1000 * (int64_t)ticks;
     return (struct dv_joint_cubic){
-        .distance = (float)distance * P_STEP,
+        .distance = dv_to_float(distance) * P_STEP,
         .v0 = (float)v0 * V_STEP,
         .v1 = (float)v1 * V_STEP,
-        .a0 = (float)(mean - (4 * (int64_t)v0 + 2 * (int64_t)v1) * time) * unit,
-        .a1 = (float)((2 * (int64_t)v0 + 4 * (int64_t)v1) * time - mean) * unit,
+        .a0 = dv_to_float(mean - (4 * (int64_t)v0 + 2 * (int64_t)v1) * time) * unit,
+        .a1 = dv_to_float((2 * (int64_t)v0 + 4 * (int64_t)v1) * time - mean) * unit,
         .seconds = seconds,
     };
 }

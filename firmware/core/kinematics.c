@@ -138,7 +138,7 @@ static bool arm_angle(const struct dv_delta_arm *arm, struct vector centre, floa
     if (!(square >= -edge)) {
         return false;
     }
-    float q = sqrtf(fmaxf(square, 0.0f));
+    float q = square > 0.0f ? sqrtf(square) : 0.0f;
     *angle = atan2f(-z * k - p * q, p * k - z * q);
     return true;
 }

@@ -6,7 +6,9 @@
 
 #define TO_Q32 8 /* from 2^-24 */
 #define LEAST_ACCELERATION 256 /* 2^-24 microsteps/ms²: 2^16 in those of the brake */
-#define BRAKE_MS_MAX 1000
+#define BRAKE_MS_MAX 1000 /* so that the brake's arithmetic fits 64 bits */
+#define HOMING_MICROSTEPS_MAX (1 << 20)
+#define HOMING_MS_MAX 600000
 
 static const float PER_SECOND = 1000.0f / 65536.0f; /* microsteps/s in 2^-16 microsteps/ms */
 static const float PER_SECOND2 = 1e6f / 16777216.0f; /* microsteps/s² in 2^-24 microsteps/ms² */
@@ -21,23 +23,43 @@ static bool finite_numbers(const float *values, int count)
     return true;
 }
 
-static bool speeds_make_sense(const struct dv_configure *c, int joint, uint32_t tick_hz)
-{
-    uint64_t velocity = c->velocity[joint], acceleration = c->acceleration[joint];
-    return velocity > 0 && c->unhomed_velocity[joint] > 0 && c->homing_fast[joint] > 0
-        && c->homing_slow[joint] > 0
-        && velocity * 2000u <= (uint64_t)tick_hz << 16 /* a step every other tick */
-        && acceleration >= LEAST_ACCELERATION && velocity << 8 <= acceleration * BRAKE_MS_MAX;
-}
-
-static bool joint_makes_sense(const struct dv_configure *c, int joint, uint32_t tick_hz)
+static bool joint_makes_sense(const struct dv_configure *c, int joint)
 {
     int64_t ready = (int64_t)c->ready[joint] * 1024;
     float per_rad = c->microsteps_per_rad[joint];
     return c->joint_min[joint] < c->joint_max[joint] && c->joint_min[joint] <= ready
-        && ready <= c->joint_max[joint] && per_rad > 0.0f && isfinite(per_rad)
-        && c->homing_backoff[joint] > 0 && c->homing_max_travel[joint] > 0
-        && speeds_make_sense(c, joint, tick_hz);
+        && ready <= c->joint_max[joint] && per_rad > 0.0f && isfinite(per_rad);
+}
+
+static bool speeds_make_sense(const struct dv_configure *c, int joint, uint32_t tick_hz)
+{
+    uint64_t velocity = c->velocity[joint], acceleration = c->acceleration[joint];
+    return velocity > 0 && c->unhomed_velocity[joint] > 0
+        && velocity * 2000 <= (uint64_t)tick_hz << 16 /* a step every other tick */
+        && acceleration >= LEAST_ACCELERATION && velocity << 8 <= acceleration * BRAKE_MS_MAX;
+}
+
+static int64_t larger(int64_t a, int64_t b)
+{
+    return a > b ? a : b;
+}
+
+static int64_t size_of(int64_t value)
+{
+    return value < 0 ? -value : value;
+}
+
+/* What is bounded here keeps positions and times of homing inside their integers. */
+static bool homing_makes_sense(const struct dv_configure *c, int joint)
+{
+    uint32_t fast = c->homing_fast[joint], slow = c->homing_slow[joint];
+    uint32_t backoff = c->homing_backoff[joint], travel = c->homing_max_travel[joint];
+    int64_t zero = c->homing_switch[joint];
+    int64_t furthest = larger(larger(backoff, travel), size_of(zero));
+    int64_t way = larger(furthest, size_of(c->ready[joint] - zero));
+    return 0 < fast && fast <= c->velocity[joint] && 0 < slow && slow <= c->velocity[joint]
+        && backoff > 0 && travel > 0 && furthest <= HOMING_MICROSTEPS_MAX
+        && way << 16 <= (int64_t)(fast < slow ? fast : slow) * HOMING_MS_MAX;
 }
 
 static bool range_makes_sense(const float range[2])
@@ -70,7 +92,8 @@ static bool makes_sense(const struct dv_configure *c, uint32_t tick_hz)
         return false;
     }
     for (int joint = 0; joint < c->joints; joint++) {
-        if (!joint_makes_sense(c, joint, tick_hz)) {
+        if (!joint_makes_sense(c, joint) || !speeds_make_sense(c, joint, tick_hz)
+            || !homing_makes_sense(c, joint)) {
             return false;
         }
     }

@@ -31,8 +31,8 @@ struct dv_parameters {
     struct dv_delta_arm arm[DV_ARMS];
 };
 
-/* False for a configuration that makes no sense, or asks for more than a step every other tick,
- * or for a brake of more than a second. `parameters` are then not to be used.
+/* False for a configuration that makes no sense (messages.py says which do not), and for a tick that
+ * is out of bounds. `parameters` are then not to be used.
  */
 bool dv_parameters_from(struct dv_parameters *parameters, const struct dv_configure *configure,
                         uint32_t tick_hz);
