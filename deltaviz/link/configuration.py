@@ -2,90 +2,121 @@
 
 from __future__ import annotations
 
-import hashlib
 import struct
-from collections.abc import Iterable, Iterator
-from dataclasses import fields
-from math import radians
+from collections.abc import Iterable
+from math import inf, radians
 from typing import TYPE_CHECKING
+from zlib import crc32
 
-from deltaviz.link.messages import Configure
+from deltaviz.link.messages import Configure, Options, RobotKind
+from deltaviz.link.wire.codec import encode
 
 if TYPE_CHECKING:  # the simulated board's process needs the hash, and none of the robots' imports
     from deltaviz.robots import Robot
 
+P_UNIT = 1024  # 2^-10 microsteps in one microstep
+V_UNIT = 65.536  # 2^-16 microsteps/ms in one microstep/s
+A_UNIT = 2**24 / 1e6  # 2^-24 microsteps/ms² in one microstep/s²
+
 
 def configure_from(robot: Robot) -> Configure:
     """What the board must know to guard `robot`. For a mechanism whose forward kinematics the
-    board does not have, the geometry is empty: it guards the joints alone.
+    board does not have, the geometry is all zeros: it guards the joints alone.
+
+    Speeds are rounded down. Joint limits are rounded so that the ready pose, which is a whole
+    number of microsteps, lies inside.
     """
-    joint, homing = robot.limits.joint, robot.homing
+    joint, homing, workspace = robot.limits.joint, robot.homing, robot.workspace
+    per_rad = robot.drive.microsteps_per_rad
+    ready = _microsteps(homing.ready, per_rad)
     return Configure(
-        kind=robot.kind,
-        geometry=_geometry(robot),
-        tool_offset=_floats(robot.tool_offset),
-        joint_min=_floats(robot.joints.min),
-        joint_max=_floats(robot.joints.max),
-        workspace_z=robot.workspace.z,
-        workspace_radius=robot.workspace.radius,
-        velocity=_floats(joint.velocity),
-        acceleration=_floats(joint.acceleration),
-        unhomed_velocity=_floats(joint.unhomed_velocity),
-        microsteps_per_rad=_floats(robot.drive.microsteps_per_rad),
-        inverted=tuple(robot.drive.invert),
+        kind=_kind(robot),
+        options=_options(robot),
         homing_direction=homing.direction,
-        homing_switch=_floats(homing.switch),
-        homing_fast=homing.fast,
-        homing_slow=homing.slow,
-        homing_backoff=homing.backoff,
-        homing_max_travel=homing.max_travel,
-        homing_together=homing.together,
-        ready=_floats(homing.ready),
-        workspace_x=robot.workspace.x,
-        workspace_y=robot.workspace.y,
+        joint_min=tuple(map(min, _microsteps(robot.joints.min, per_rad, P_UNIT), _knots(ready))),
+        joint_max=tuple(map(max, _microsteps(robot.joints.max, per_rad, P_UNIT), _knots(ready))),
+        velocity=_down(joint.velocity, per_rad, V_UNIT),
+        acceleration=_down(joint.acceleration, per_rad, A_UNIT),
+        unhomed_velocity=_down(joint.unhomed_velocity, per_rad, V_UNIT),
+        microsteps_per_rad=_floats(per_rad),
+        inverted=tuple(robot.drive.invert),
+        homing_switch=_microsteps(homing.switch, per_rad),
+        homing_fast=_down([min(homing.fast, top) for top in joint.velocity], per_rad, V_UNIT),
+        homing_slow=_down([min(homing.slow, top) for top in joint.velocity], per_rad, V_UNIT),
+        homing_backoff=_microsteps([homing.backoff] * len(per_rad), per_rad),
+        homing_max_travel=_microsteps([homing.max_travel] * len(per_rad), per_rad),
+        ready=ready,
+        workspace_x=_range(workspace.x),
+        workspace_y=_range(workspace.y),
+        workspace_z=_range(workspace.z),
+        workspace_radius=inf if workspace.radius is None else _floats([workspace.radius])[0],
+        **_geometry(robot),
     )
 
 
-def _geometry(robot: Robot) -> tuple[tuple[str, tuple[float, ...]], ...]:
+def configuration_hash(configure: Configure) -> int:
+    """From 1 to 2^32 - 1; the same for equal values, on every machine."""
+    _, payload = encode(configure)
+    return crc32(payload) or 1
+
+
+def _options(robot: Robot) -> Options:
+    options = Options.NONE
+    if robot.homing.together:
+        options |= Options.HOMING_TOGETHER
+    if robot.homing.switch_active == "open":
+        options |= Options.SWITCH_ACTIVE_OPEN
+    if robot.drive.enable_active == "high":
+        options |= Options.ENABLE_ACTIVE_HIGH
+    return options
+
+
+def _kind(robot: Robot) -> RobotKind:
+    from deltaviz.mechanism import RotaryDelta
+
+    delta = isinstance(robot.mechanism, RotaryDelta)
+    return RobotKind.ROTARY_DELTA if delta else RobotKind.JOINTS_ONLY
+
+
+def _geometry(robot: Robot) -> dict[str, tuple[float, ...]]:
     from deltaviz.mechanism import RotaryDelta
 
     arms = robot.mechanism
     if not isinstance(arms, RotaryDelta):
-        return ()
-    return (
-        ("base_radius", _floats(arms.base_radius)),
-        ("effector_radius", _floats(arms.effector_radius)),
-        ("upper_arm", _floats(arms.upper_arm)),
-        ("forearm", _floats(arms.forearm)),
-        ("azimuths", tuple(radians(azimuth) for azimuth in arms.azimuths_deg)),
-    )
+        names = ("base_radius", "effector_radius", "upper_arm", "forearm", "azimuth")
+        none = (0.0,) * robot.joint_count
+        return dict.fromkeys(names, none) | {"tool_offset": (0.0,) * 3}
+    return {
+        "base_radius": _floats(arms.base_radius),
+        "effector_radius": _floats(arms.effector_radius),
+        "upper_arm": _floats(arms.upper_arm),
+        "forearm": _floats(arms.forearm),
+        "azimuth": _floats(radians(azimuth) for azimuth in arms.azimuths_deg),
+        "tool_offset": _floats(robot.tool_offset),
+    }
+
+
+def _microsteps(
+    angles: Iterable[float], per_rad: Iterable[float], unit: int = 1
+) -> tuple[int, ...]:
+    return tuple(round(angle * m * unit) for angle, m in zip(angles, per_rad, strict=True))
+
+
+def _down(rates: Iterable[float], per_rad: Iterable[float], unit: float) -> tuple[int, ...]:
+    """Whole units, and never none: a speed that is too slow for the board is its slowest."""
+    return tuple(max(1, int(rate * m * unit)) for rate, m in zip(rates, per_rad, strict=True))
+
+
+def _knots(microsteps: Iterable[int]) -> tuple[int, ...]:
+    return tuple(value * P_UNIT for value in microsteps)
+
+
+def _range(limits: tuple[float, float] | None) -> tuple[float, float]:
+    low, high = _floats((-inf, inf) if limits is None else limits)
+    return low, high
 
 
 def _floats(values: Iterable[float]) -> tuple[float, ...]:
-    return tuple(float(value) for value in values)
-
-
-def configuration_hash(configure: Configure) -> int:
-    """A number from 1 to 2^32 - 1 that is the same for equal values, on every machine."""
-    digest = hashlib.sha256()
-    for field in fields(configure):
-        digest.update(field.name.encode())
-        for part in _parts(getattr(configure, field.name)):
-            digest.update(part)
-    return int.from_bytes(digest.digest()[:4], "little") or 1
-
-
-def _parts(value: object) -> Iterator[bytes]:
-    if value is None:
-        yield b"-"
-    elif isinstance(value, str):
-        yield b"s%d:" % len(value) + value.encode()
-    elif isinstance(value, bool | int | float):
-        yield b"f" + struct.pack("<d", value + 0.0)  # + 0.0: the two zeros are equal
-    elif isinstance(value, tuple):
-        yield b"("
-        for item in value:  # pyright: ignore[reportUnknownVariableType]
-            yield from _parts(item)  # pyright: ignore[reportUnknownArgumentType]
-        yield b")"
-    else:
-        raise TypeError(f"a configuration has no {type(value).__name__}")
+    """As the wire carries them: single precision, and one zero."""
+    exact = [value + 0.0 for value in values]
+    return struct.unpack(f"<{len(exact)}f", struct.pack(f"<{len(exact)}f", *exact))

@@ -1,4 +1,4 @@
-"""Every message between host and board, as values. The bytes come with the codec.
+"""Every message between host and board, as values. As bytes: wire/protocol.toml.
 
 Ticks are the board's step ticks and wrap at 2^32; epochs and indices wrap at 2^16. Positions are
 in 2^-10 microsteps, velocities in 2^-16 microsteps per millisecond, counts in microsteps; each
@@ -125,36 +125,46 @@ class Hello:
 
 @dataclass(frozen=True, slots=True)
 class Configure:
-    """What the board must know to guard itself. Angles in rad, lengths in mm.
+    """What the board must know to guard itself, in its own units, so that every board works with
+    the same integers. Microsteps, and the units of knots: the reals are single precision.
 
-    Arrays have one entry per joint, 1 to 4; `geometry` names per-arm values of the mechanism and is
-    empty for a robot that the board guards by its joint limits alone. The board answers with its
-    hash of these values; the host compares it with its own. Taken while DISABLED only; the same
-    values again are answered in every state.
+    Arrays have one entry per joint, 1 to 4; the geometry is all zeros for a robot that the board
+    guards by its joint limits alone. The board answers with the CRC-32 of these values as bytes;
+    the host compares it with its own. Taken while DISABLED only; the same values again are
+    answered in every state.
+
+    Refused (CONFIGURATION): what is not finite, but for the bounds of the workspace; what has to be
+    positive and is not; a ready pose outside the joint limits or out of reach; more than one step
+    every other tick; homing faster than the joint's velocity, further than 2^20 microsteps or in
+    more than ten minutes; a brake from top velocity that takes more than a second.
     """
 
-    kind: str
-    geometry: tuple[tuple[str, tuple[float, ...]], ...]
-    tool_offset: tuple[float, ...]
-    joint_min: tuple[float, ...]
-    joint_max: tuple[float, ...]
-    workspace_z: tuple[float, float] | None
-    workspace_radius: float | None
-    velocity: tuple[float, ...]
-    acceleration: tuple[float, ...]
-    unhomed_velocity: tuple[float, ...]
+    kind: RobotKind
+    options: Options
+    homing_direction: int  # +1 towards positive angles, -1 towards negative
+    joint_min: tuple[int, ...]  # 2^-10 microsteps
+    joint_max: tuple[int, ...]
+    velocity: tuple[int, ...]  # 2^-16 microsteps/ms
+    acceleration: tuple[int, ...]  # 2^-24 microsteps/ms²
+    unhomed_velocity: tuple[int, ...]
     microsteps_per_rad: tuple[float, ...]
     inverted: tuple[bool, ...]
-    homing_direction: int  # +1 towards positive angles, -1 towards negative
-    homing_switch: tuple[float, ...]
-    homing_fast: float
-    homing_slow: float
-    homing_backoff: float
-    homing_max_travel: float
-    homing_together: bool
-    ready: tuple[float, ...]
-    workspace_x: tuple[float, float] | None = None
-    workspace_y: tuple[float, float] | None = None
+    homing_switch: tuple[int, ...]  # microsteps
+    homing_fast: tuple[int, ...]  # 2^-16 microsteps/ms
+    homing_slow: tuple[int, ...]
+    homing_backoff: tuple[int, ...]  # microsteps
+    homing_max_travel: tuple[int, ...]
+    ready: tuple[int, ...]
+    base_radius: tuple[float, ...]  # mm
+    effector_radius: tuple[float, ...]
+    upper_arm: tuple[float, ...]
+    forearm: tuple[float, ...]
+    azimuth: tuple[float, ...]  # rad
+    tool_offset: tuple[float, ...]  # mm
+    workspace_x: tuple[float, float]  # mm; infinite: unbounded
+    workspace_y: tuple[float, float]
+    workspace_z: tuple[float, float]
+    workspace_radius: float
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,13 +15,15 @@ DIGEST = 1234
 TICK_HZ = 200_000
 MS = TICK_HZ // 1000
 SCALE = (500.0, 300.0)
-CONFIGURATION: Any = m.Configure(
-    kind="slides", geometry=(), tool_offset=(0.0, 0.0), joint_min=(-1.0, -1.0),
-    joint_max=(1.0, 1.0), workspace_z=None, workspace_radius=None, velocity=(5.0, 5.0),
-    acceleration=(50.0, 50.0), unhomed_velocity=(0.1, 0.1), microsteps_per_rad=SCALE,
-    inverted=(False, False), homing_direction=-1, homing_switch=(-1.0, -1.0), homing_fast=0.1,
-    homing_slow=0.1, homing_backoff=0.1, homing_max_travel=1.0, homing_together=True,
-    ready=(0.0, 0.0),
+CONFIGURATION = m.Configure(
+    kind=m.RobotKind.JOINTS_ONLY, options=m.Options.NONE, homing_direction=-1,
+    joint_min=(-1000, -1000), joint_max=(1000, 1000), velocity=(5, 5), acceleration=(50, 50),
+    unhomed_velocity=(1, 1), microsteps_per_rad=SCALE, inverted=(False, False),
+    homing_switch=(-1, -1), homing_fast=(1, 1), homing_slow=(1, 1), homing_backoff=(1, 1),
+    homing_max_travel=(1, 1), ready=(0, 0), base_radius=(0.0, 0.0), effector_radius=(0.0, 0.0),
+    upper_arm=(0.0, 0.0), forearm=(0.0, 0.0), azimuth=(0.0, 0.0), tool_offset=(0.0, 0.0, 0.0),
+    workspace_x=(-1.0, 1.0), workspace_y=(-1.0, 1.0), workspace_z=(-1.0, 1.0),
+    workspace_radius=1.0,
 )  # fmt: skip
 HELLO = m.HelloReply(
     version=m.PROTOCOL_VERSION, board="b", build="1", joints=2, tick_hz=TICK_HZ, queue_places=64,

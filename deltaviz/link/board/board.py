@@ -178,7 +178,7 @@ class SimulatedBoard:
 
     def _configure(self, message: Configure) -> None:
         robot = self._core.robot
-        if robot is not None and message == robot.parameters.configure:
+        if robot is not None and configuration_hash(message) == robot.hash:
             self._reports.say(Configured(robot.hash))
             return
         parameters = parameters_from(message, tick_hz=self._tick_hz)
@@ -191,11 +191,12 @@ class SimulatedBoard:
 
     def _take_configuration(self, parameters: Parameters) -> None:
         homed = self._start_homed and self._core.robot is None
-        ready = parameters.configure.ready
+        configure = parameters.configure
+        ready = [r / m for r, m in zip(configure.ready, configure.microsteps_per_rad, strict=True)]
         robot = ConfiguredBoard(
             parameters,
             theta=ready if homed else self._theta or power_up_pose(parameters),
-            hash_=configuration_hash(parameters.configure),
+            hash_=configuration_hash(configure),
             tick_hz=self._tick_hz,
         )
         self._core.configure(robot, homed=homed)

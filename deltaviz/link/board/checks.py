@@ -19,6 +19,7 @@ from deltaviz.link.messages import Refusal
 RELATIVE_SLACK = 1e-3
 P_STEP = 2.0**-10  # microsteps: the unit of a knot's position
 V_STEP = 1000 / 65536  # microsteps per second: the unit of a knot's velocity
+A_STEP = 1e6 / 2**24  # microsteps per second²: the unit of a configured acceleration
 TIP_SLACK = 0.1  # mm
 
 
@@ -83,15 +84,14 @@ class Checks:
         configure = parameters.configure
         self._configure = configure
         self._per_rad = configure.microsteps_per_rad
-        per_joint = range(parameters.joints)
-        self._low = [configure.joint_min[i] * self._per_rad[i] - 1 for i in per_joint]
-        self._high = [configure.joint_max[i] * self._per_rad[i] + 1 for i in per_joint]
-        self._velocity = [configure.velocity[i] * self._per_rad[i] for i in per_joint]
+        self._low = [limit * P_STEP - 1 for limit in configure.joint_min]
+        self._high = [limit * P_STEP + 1 for limit in configure.joint_max]
+        self._velocity = [limit * V_STEP for limit in configure.velocity]
         self._unhomed = [
-            min(configure.unhomed_velocity[i], configure.velocity[i]) * self._per_rad[i]
-            for i in per_joint
+            min(unhomed * V_STEP, limit)
+            for unhomed, limit in zip(configure.unhomed_velocity, self._velocity, strict=True)
         ]
-        self._acceleration = [configure.acceleration[i] * self._per_rad[i] for i in per_joint]
+        self._acceleration = [limit * A_STEP for limit in configure.acceleration]
 
     def objection(
         self,
@@ -180,8 +180,5 @@ class Checks:
         outside = 0.0
         ranges = (configure.workspace_x, configure.workspace_y, configure.workspace_z)
         for value, allowed in zip(tip, ranges, strict=True):
-            if allowed is not None:
-                outside = max(outside, allowed[0] - value, value - allowed[1])
-        if configure.workspace_radius is not None:
-            outside = max(outside, hypot(tip[0], tip[1]) - configure.workspace_radius)
-        return outside
+            outside = max(outside, allowed[0] - value, value - allowed[1])
+        return max(outside, hypot(tip[0], tip[1]) - configure.workspace_radius)

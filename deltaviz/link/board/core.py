@@ -91,7 +91,7 @@ class Core:
         self._switches = robot.drive.switches
         self.reports.changed = True
         if homed:
-            robot.drive.place([count << 32 for count in robot.parameters.ready])
+            robot.drive.place([count << 32 for count in robot.parameters.configure.ready])
             self.homed = True
             self.change(BoardEvent.ENABLE)
 

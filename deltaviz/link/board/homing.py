@@ -28,11 +28,12 @@ class JointHoming:
     """One joint. Positions in Q32, velocities in 2^-16 microsteps per ms."""
 
     def __init__(self, parameters: Parameters, joint: int) -> None:
-        self._direction = parameters.configure.homing_direction
-        self._fast = parameters.fast[joint] * self._direction
-        self._slow = parameters.slow[joint] * self._direction
-        self._backoff = parameters.backoff[joint] << 32
-        self._max_travel = parameters.max_travel[joint] << 32
+        configure = parameters.configure
+        self._direction = configure.homing_direction
+        self._fast = configure.homing_fast[joint] * self._direction
+        self._slow = configure.homing_slow[joint] * self._direction
+        self._backoff = configure.homing_backoff[joint] << 32
+        self._max_travel = configure.homing_max_travel[joint] << 32
         self._most_change = parameters.accelerations[joint] >> 16
         self._mark = 0
         self._released: int | None = None
@@ -114,7 +115,7 @@ class Homing:
             if joint.done:
                 continue
             joint.next_velocity(position, pressed=pressed)
-            if not self._parameters.configure.homing_together:
+            if not self._parameters.homing_together:
                 break
         if all(joint.done for joint in self._joints):
             return None
@@ -131,7 +132,7 @@ class Homing:
         return [
             (switch + nearest(position) - nearest(joint.trigger)) << 32
             for position, joint, switch in zip(
-                positions, self._joints, self._parameters.switch, strict=True
+                positions, self._joints, self._parameters.configure.homing_switch, strict=True
             )
         ]
 
@@ -140,7 +141,7 @@ class Homing:
         still = [0] * len(counts)
         return Cubic(
             start=[count << 10 for count in counts],
-            end=[ready << 10 for ready in self._parameters.ready],
+            end=[ready << 10 for ready in self._parameters.configure.ready],
             v_start=still,
             v_end=still,
             ticks=self._ticks_to_ready(counts),
@@ -150,9 +151,9 @@ class Homing:
     def _ticks_to_ready(self, counts: Sequence[int]) -> int:
         """From rest to rest the cubic's peaks are 3 d / (2 T) and 6 d / T²."""
         ms = 4
-        parameters = self._parameters
+        configure, accelerations = self._parameters.configure, self._parameters.accelerations
         for count, ready, fast, acceleration in zip(
-            counts, parameters.ready, parameters.fast, parameters.accelerations, strict=True
+            counts, configure.ready, configure.homing_fast, accelerations, strict=True
         ):
             distance = abs(ready - count)
             ms = max(

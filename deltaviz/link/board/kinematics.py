@@ -9,13 +9,11 @@ P = D1 + w - n √((l1² - |w|²) / n²), the working assembly.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from math import cos, sin, sqrt
 from typing import Protocol
 
 Vector = tuple[float, float, float]
-
-GEOMETRY = ("base_radius", "effector_radius", "upper_arm", "forearm", "azimuths")
 
 
 class ForwardKinematics(Protocol):
@@ -27,12 +25,22 @@ class ForwardKinematics(Protocol):
 
 
 class RotaryDeltaForward:
-    def __init__(self, geometry: Mapping[str, Sequence[float]], tool_offset: Sequence[float]):
-        """`geometry` has the names of GEOMETRY with three numbers each (mm, azimuths in rad)."""
-        base, effector, upper, forearm, azimuths = (geometry[name] for name in GEOMETRY)
+    """Three numbers each: mm, and the azimuths in rad."""
+
+    def __init__(
+        self,
+        *,
+        base_radius: Sequence[float],
+        effector_radius: Sequence[float],
+        upper_arm: Sequence[float],
+        forearm: Sequence[float],
+        azimuth: Sequence[float],
+        tool_offset: Sequence[float],
+    ) -> None:
         self._tool = tuple(tool_offset)
         self._arms = tuple(
-            (base[i] - effector[i], upper[i], cos(azimuths[i]), sin(azimuths[i])) for i in range(3)
+            (base_radius[i] - effector_radius[i], upper_arm[i], cos(azimuth[i]), sin(azimuth[i]))
+            for i in range(3)
         )
         self._forearms = tuple(forearm)
 

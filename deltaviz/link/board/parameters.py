@@ -1,153 +1,120 @@
-"""A configuration as the board works with it: checked once, in its own units."""
+"""A configuration as the board works with it: checked once, with what follows from it."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from math import isfinite
 
-from deltaviz.link.board.kinematics import GEOMETRY, ForwardKinematics, RotaryDeltaForward
-from deltaviz.link.messages import Configure
+from deltaviz.link.board.kinematics import ForwardKinematics, RotaryDeltaForward
+from deltaviz.link.messages import Configure, Options, RobotKind
 
-V_UNIT = 65.536  # 2^-16 microsteps per ms in one microstep per second
-A_UNIT = 2**32 / 1e6  # 2^-32 microsteps per ms² in one microstep per s²
+_TO_Q32 = 8  # from 2^-24
+_LEAST_ACCELERATION = 1 << 8  # 2^-24 microsteps per ms²: 2^16 in those of the brake
+_BRAKE_MS_MAX = 1000  # so that the brake's arithmetic fits 64 bits
+_HOMING_MICROSTEPS_MAX = 1 << 20
+_HOMING_MS_MAX = 600_000
 
 
 @dataclass(frozen=True, slots=True)
 class Parameters:
-    """Accelerations in 2^-32 microsteps per ms², homing speeds in 2^-16 microsteps per ms,
-    homing distances and angles in microsteps.
-    """
+    """`accelerations` are in 2^-32 microsteps per ms²."""
 
     configure: Configure
     joints: int
     accelerations: tuple[int, ...]
+    homing_together: bool
     forward: ForwardKinematics | None
-    fast: tuple[int, ...]
-    slow: tuple[int, ...]
-    backoff: tuple[int, ...]
-    max_travel: tuple[int, ...]
-    switch: tuple[int, ...]
-    ready: tuple[int, ...]
 
 
 def parameters_from(configure: Configure, *, tick_hz: int) -> Parameters | None:
-    """None for a configuration that makes no sense, or asks for more than a step every other
-    tick.
-    """
+    """None for a configuration that makes no sense: `Configure` says which do not."""
     if not _makes_sense(configure, tick_hz):
         return None
-    per_rad = configure.microsteps_per_rad
-
-    def microsteps(angles: Sequence[float]) -> tuple[int, ...]:
-        return tuple(round(angle * m) for angle, m in zip(angles, per_rad, strict=True))
-
-    def speeds(speed: float) -> tuple[int, ...]:
-        return tuple(
-            max(1, int(min(speed, top) * m * V_UNIT))
-            for top, m in zip(configure.velocity, per_rad, strict=True)
+    forward = None
+    if configure.kind is RobotKind.ROTARY_DELTA:
+        forward = RotaryDeltaForward(
+            base_radius=configure.base_radius,
+            effector_radius=configure.effector_radius,
+            upper_arm=configure.upper_arm,
+            forearm=configure.forearm,
+            azimuth=configure.azimuth,
+            tool_offset=configure.tool_offset,
         )
-
-    joints = len(per_rad)
-    forward = (
-        RotaryDeltaForward(dict(configure.geometry), configure.tool_offset)
-        if configure.geometry
-        else None
-    )
-    if forward is not None and forward.tip(configure.ready) is None:
-        return None
+        per_rad = configure.microsteps_per_rad
+        if forward.tip([r / m for r, m in zip(configure.ready, per_rad, strict=True)]) is None:
+            return None
     return Parameters(
         configure=configure,
-        joints=joints,
-        accelerations=tuple(
-            int(a * m * A_UNIT) for a, m in zip(configure.acceleration, per_rad, strict=True)
-        ),
+        joints=len(configure.ready),
+        accelerations=tuple(a << _TO_Q32 for a in configure.acceleration),
+        homing_together=Options.HOMING_TOGETHER in configure.options,
         forward=forward,
-        fast=speeds(configure.homing_fast),
-        slow=speeds(configure.homing_slow),
-        backoff=microsteps([configure.homing_backoff] * joints),
-        max_travel=microsteps([configure.homing_max_travel] * joints),
-        switch=microsteps(configure.homing_switch),
-        ready=microsteps(configure.ready),
     )
 
 
 def _makes_sense(configure: Configure, tick_hz: int) -> bool:
-    joints = len(configure.microsteps_per_rad)
-    per_joint = (
-        configure.joint_min,
-        configure.joint_max,
-        configure.velocity,
-        configure.acceleration,
-        configure.unhomed_velocity,
-        configure.inverted,
-        configure.homing_switch,
-        configure.ready,
-    )
-    if not 1 <= joints <= 4 or any(len(values) != joints for values in per_joint):
-        return False
+    c = configure
+    joints = len(c.microsteps_per_rad)
+    per_joint = (c.joint_min, c.joint_max, c.velocity, c.acceleration, c.unhomed_velocity)
+    per_joint += (c.inverted, c.homing_switch, c.homing_fast, c.homing_slow, c.homing_backoff)
+    per_joint += (c.homing_max_travel, c.ready)
     return (
-        all(isfinite(value) for value in _numbers(configure))
-        and all(value > 0 for value in _positive(configure))
-        and all(lo < hi for lo, hi in zip(configure.joint_min, configure.joint_max, strict=True))
+        1 <= joints <= 4
+        and all(len(values) == joints for values in per_joint)
+        and c.homing_direction in (-1, 1)
         and all(
-            lo <= ready <= hi
-            for lo, ready, hi in zip(
-                configure.joint_min, configure.ready, configure.joint_max, strict=True
-            )
+            _joint_makes_sense(c, joint)
+            and _speeds_make_sense(c, joint, tick_hz)
+            and _homing_makes_sense(c, joint)
+            for joint in range(joints)
         )
-        and configure.homing_direction in (-1, 1)
-        and all(
-            v * m <= tick_hz / 2 and a * m * A_UNIT >= 1 << 16
-            for v, a, m in zip(
-                configure.velocity,
-                configure.acceleration,
-                configure.microsteps_per_rad,
-                strict=True,
-            )
-        )
-        and _geometry_makes_sense(configure)
+        and _finite(c.tool_offset)
+        and all(low < high for low, high in (c.workspace_x, c.workspace_y, c.workspace_z))
+        and c.workspace_radius > 0
+        and (c.kind is RobotKind.JOINTS_ONLY or _geometry_makes_sense(c))
     )
 
 
-def _numbers(configure: Configure) -> list[float]:
-    ranges = (configure.workspace_x, configure.workspace_y, configure.workspace_z)
-    return [
-        *configure.joint_min,
-        *configure.joint_max,
-        *configure.homing_switch,
-        *configure.ready,
-        *configure.tool_offset,
-        *(value for pair in ranges if pair is not None for value in pair),
-        *(value for _, values in configure.geometry for value in values),
-        *_positive(configure),
-    ]
+def _joint_makes_sense(c: Configure, joint: int) -> bool:
+    low, high, ready = c.joint_min[joint], c.joint_max[joint], c.ready[joint] << 10
+    per_rad = c.microsteps_per_rad[joint]
+    return low < high and low <= ready <= high and per_rad > 0 and isfinite(per_rad)
 
 
-def _positive(configure: Configure) -> list[float]:
-    radius = configure.workspace_radius
-    return [
-        *configure.velocity,
-        *configure.acceleration,
-        *configure.unhomed_velocity,
-        *configure.microsteps_per_rad,
-        configure.homing_fast,
-        configure.homing_slow,
-        configure.homing_backoff,
-        configure.homing_max_travel,
-        *([] if radius is None else [radius]),
-    ]
-
-
-def _geometry_makes_sense(configure: Configure) -> bool:
-    if not configure.geometry:
-        return True
-    geometry = dict(configure.geometry)
+def _speeds_make_sense(c: Configure, joint: int, tick_hz: int) -> bool:
+    velocity, acceleration = c.velocity[joint], c.acceleration[joint]
     return (
-        configure.kind == "rotary_delta"
-        and set(geometry) == set(GEOMETRY)
-        and all(len(values) == 3 for values in geometry.values())
-        and len(configure.microsteps_per_rad) == 3
-        and len(configure.tool_offset) == 3
-        and min(*geometry["upper_arm"], *geometry["forearm"]) > 0
+        velocity > 0
+        and c.unhomed_velocity[joint] > 0
+        and velocity * 2000 <= tick_hz << 16  # a step every other tick
+        and acceleration >= _LEAST_ACCELERATION
+        and velocity << 8 <= acceleration * _BRAKE_MS_MAX
     )
+
+
+def _homing_makes_sense(c: Configure, joint: int) -> bool:
+    """What is bounded here keeps positions and times of homing inside their integers."""
+    fast, slow, switch = c.homing_fast[joint], c.homing_slow[joint], c.homing_switch[joint]
+    furthest = max(c.homing_backoff[joint], c.homing_max_travel[joint], abs(switch))
+    way = max(furthest, abs(c.ready[joint] - switch))
+    return (
+        0 < fast <= c.velocity[joint]
+        and 0 < slow <= c.velocity[joint]
+        and min(c.homing_backoff[joint], c.homing_max_travel[joint]) > 0
+        and furthest <= _HOMING_MICROSTEPS_MAX
+        and way << 16 <= min(fast, slow) * _HOMING_MS_MAX
+    )
+
+
+def _geometry_makes_sense(c: Configure) -> bool:
+    arms = (c.base_radius, c.effector_radius, c.upper_arm, c.forearm, c.azimuth)
+    return (
+        len(c.ready) == len(c.tool_offset) == 3
+        and all(len(values) == 3 and _finite(values) for values in arms)
+        and min(*c.upper_arm, *c.forearm) > 0
+    )
+
+
+def _finite(values: Iterable[float]) -> bool:
+    return all(map(isfinite, values))

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from math import radians
 
 from deltaviz.link.board.parameters import Parameters
+from deltaviz.link.configuration import P_UNIT
 
 _END_BEYOND = radians(6)  # from the outermost of joint limit and switch to the mechanical end
 _POWER_UP = (0.20, -0.12, 0.08, -0.16)  # rad from the ready pose: where arms were left
@@ -26,16 +27,16 @@ class Plant:
         configure = parameters.configure
         per_rad = configure.microsteps_per_rad
         self._direction = configure.homing_direction
-        self._switch = parameters.switch
+        self._switch = configure.homing_switch
         self._arms = [round(angle * m) for angle, m in zip(theta, per_rad, strict=True)]
         self._low = [
-            int((min(low, switch) - _END_BEYOND) * m)
+            int(min(low / P_UNIT, switch) - _END_BEYOND * m)
             for low, switch, m in zip(
                 configure.joint_min, configure.homing_switch, per_rad, strict=True
             )
         ]
         self._high = [
-            int((max(high, switch) + _END_BEYOND) * m)
+            int(max(high / P_UNIT, switch) + _END_BEYOND * m)
             for high, switch, m in zip(
                 configure.joint_max, configure.homing_switch, per_rad, strict=True
             )
@@ -80,8 +81,13 @@ def power_up_pose(parameters: Parameters) -> tuple[float, ...]:
     """Where the arms of a robot that was just switched on hang: inside the joint limits."""
     configure = parameters.configure
     return tuple(
-        min(max(ready + away, low), high)
-        for ready, away, low, high in zip(
-            configure.ready, _POWER_UP, configure.joint_min, configure.joint_max, strict=False
+        min(max(ready / m + away, low / P_UNIT / m), high / P_UNIT / m)
+        for ready, away, low, high, m in zip(
+            configure.ready,
+            _POWER_UP,
+            configure.joint_min,
+            configure.joint_max,
+            configure.microsteps_per_rad,
+            strict=False,
         )
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from math import inf
 from typing import Any, TypeVar
 
 import pytest
@@ -16,6 +17,8 @@ from deltaviz.link.messages import (
     Enable,
     HostMessage,
     Keep,
+    Options,
+    RobotKind,
     Segment,
     Telemetry,
 )
@@ -31,30 +34,48 @@ M = TypeVar("M", bound=BoardMessage)
 
 
 def gantry(joints: int = 2, **changes: Any) -> Configure:
-    """A robot without geometry: the board guards its joints alone."""
+    """A robot without geometry: the board guards its joints alone. `changes` are in rad and s."""
     values: dict[str, Any] = {
-        "kind": "gantry",
-        "geometry": (),
-        "tool_offset": (),
         "joint_min": (-1.0,) * joints,
         "joint_max": (1.5,) * joints,
-        "workspace_z": None,
-        "workspace_radius": None,
-        "velocity": (VELOCITY / PER_RAD,) * joints,
-        "acceleration": (ACCELERATION / PER_RAD,) * joints,
-        "unhomed_velocity": (0.1,) * joints,
-        "microsteps_per_rad": (PER_RAD,) * joints,
-        "inverted": (False,) * joints,
         "homing_direction": -1,
         "homing_switch": tuple(-1.1 - 0.01 * joint for joint in range(joints)),
-        "homing_fast": 2.0,
-        "homing_slow": 0.2,
-        "homing_backoff": 0.05,
-        "homing_max_travel": 3.0,
         "homing_together": True,
         "ready": tuple(0.1 * joint for joint in range(joints)),
-    }
-    return Configure(**(values | changes))
+    } | changes
+
+    def microsteps(angles: Sequence[float], unit: int = 1) -> tuple[int, ...]:
+        return tuple(round(angle * PER_RAD * unit) for angle in angles)
+
+    none = (0.0,) * joints
+    return Configure(
+        kind=RobotKind.JOINTS_ONLY,
+        options=Options.HOMING_TOGETHER if values["homing_together"] else Options.NONE,
+        homing_direction=values["homing_direction"],
+        joint_min=microsteps(values["joint_min"], 1024),
+        joint_max=microsteps(values["joint_max"], 1024),
+        velocity=(round(VELOCITY * 65.536),) * joints,
+        acceleration=(round(ACCELERATION * 2**24 / 1e6),) * joints,
+        unhomed_velocity=(round(0.1 * PER_RAD * 65.536),) * joints,
+        microsteps_per_rad=(PER_RAD,) * joints,
+        inverted=(False,) * joints,
+        homing_switch=microsteps(values["homing_switch"]),
+        homing_fast=(round(2.0 * PER_RAD * 65.536),) * joints,
+        homing_slow=(round(0.2 * PER_RAD * 65.536),) * joints,
+        homing_backoff=microsteps([0.05] * joints),
+        homing_max_travel=microsteps([3.0] * joints),
+        ready=microsteps(values["ready"]),
+        base_radius=none,
+        effector_radius=none,
+        upper_arm=none,
+        forearm=none,
+        azimuth=none,
+        tool_offset=(0.0, 0.0, 0.0),
+        workspace_x=(-inf, inf),
+        workspace_y=(-inf, inf),
+        workspace_z=(-inf, inf),
+        workspace_radius=inf,
+    )
 
 
 class Bench:

@@ -3,16 +3,26 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import radians
+from math import inf, nan, radians
 
 import numpy as np
 import pytest
 
 from deltaviz import load_robot
+from deltaviz.link.board import SimulatedBoard
 from deltaviz.link.board.checks import Checks
 from deltaviz.link.board.kinematics import RotaryDeltaForward
+from deltaviz.link.board.parameters import parameters_from
 from deltaviz.link.configuration import configure_from
-from deltaviz.link.messages import BoardState, Refusal, Refused, StopCause, Stopped
+from deltaviz.link.messages import (
+    BoardState,
+    Configured,
+    Refusal,
+    Refused,
+    RobotKind,
+    StopCause,
+    Stopped,
+)
 
 PRESETS = ["stm32", "trossen", "zheng2023", "deltadraw"]
 ACCELERATION = 50_000.0
@@ -105,11 +115,23 @@ def test_outside_its_limits_it_accepts_only_the_way_in(bench):
     assert judge(-1020, -1021).reason is Refusal.JOINT_LIMIT
 
 
+def forward_of(robot):
+    """Its arms as the robot has them, in double precision."""
+    arms = robot.mechanism
+    return RotaryDeltaForward(
+        base_radius=arms.base_radius,
+        effector_radius=arms.effector_radius,
+        upper_arm=arms.upper_arm,
+        forearm=arms.forearm,
+        azimuth=np.radians(arms.azimuths_deg),
+        tool_offset=robot.tool_offset,
+    )
+
+
 @pytest.mark.parametrize("name", PRESETS)
 def test_its_own_forward_kinematics_agrees_with_the_robots(name):
     robot = load_robot(name)
-    configure = configure_from(robot)
-    forward = RotaryDeltaForward(dict(configure.geometry), configure.tool_offset)
+    forward = forward_of(robot)
     rng = np.random.default_rng(3)
     theta = rng.uniform(radians(-60), radians(110), (400, 3))
     theirs = robot.forward(theta)
@@ -126,15 +148,26 @@ def test_its_own_forward_kinematics_agrees_with_the_robots(name):
     assert reached > 300
 
 
+@pytest.mark.parametrize("name", PRESETS)
+def test_what_it_is_told_of_the_arms_gives_the_same_tip_within_a_tenth_of_a_micrometre(name):
+    robot = load_robot(name)
+    parameters = parameters_from(configure_from(robot), tick_hz=200_000)
+    assert parameters is not None
+    told = parameters.forward
+    assert told is not None
+    for theta in np.random.default_rng(4).uniform(radians(-20), radians(60), (100, 3)):
+        assert told.tip(theta) == pytest.approx(forward_of(robot).tip(theta), abs=1e-4)
+
+
 def test_unequal_arms_each_have_their_own_lengths():
     geometry = {
         "base_radius": (115.0, 117.0, 113.0),
         "effector_radius": (75.0, 74.0, 76.0),
         "upper_arm": (125.0, 126.0, 124.0),
         "forearm": (338.0, 336.0, 340.0),
-        "azimuths": (0.0, 2.1, 4.2),
+        "azimuth": (0.0, 2.1, 4.2),
     }
-    forward = RotaryDeltaForward(geometry, (0.0, 0.0, -10.0))
+    forward = RotaryDeltaForward(**geometry, tool_offset=(0.0, 0.0, -10.0))
     theta = (0.2, 0.5, 0.1)
     tip = forward.tip(theta)
     assert tip is not None
@@ -146,8 +179,8 @@ def test_unequal_arms_each_have_their_own_lengths():
             + geometry["upper_arm"][i] * np.cos(theta[i])
         )
         elbow = (
-            out * np.cos(geometry["azimuths"][i]),
-            out * np.sin(geometry["azimuths"][i]),
+            out * np.cos(geometry["azimuth"][i]),
+            out * np.sin(geometry["azimuth"][i]),
             -geometry["upper_arm"][i] * np.sin(theta[i]),
         )
         length = np.linalg.norm(np.subtract((x, y, z + 10.0), elbow))
@@ -199,31 +232,79 @@ def test_without_its_own_workspace_check_it_would_leave(delta, monkeypatch):
     assert fall(bench, robot)[2] < robot.workspace.z[0] - 1
 
 
+BOARD_TICKS = 200  # per millisecond
+
+
+@pytest.mark.parametrize(
+    ("field", "taken", "refused"),
+    [
+        ("joint_min", 100 * 1024, 100 * 1024 + 1),  # the ready pose of joint 1
+        ("joint_max", 100 * 1024, 100 * 1024 - 1),
+        ("velocity", BOARD_TICKS * 65536 // 2, BOARD_TICKS * 65536 // 2 + 1),  # a step in two ticks
+        ("velocity", 131_072, 131_071),  # as fast as homing is
+        ("acceleration", 67_109, 67_108),  # a brake of a second
+        ("unhomed_velocity", 1, 0),
+        ("microsteps_per_rad", 1e-3, 0.0),
+        ("microsteps_per_rad", 1e30, inf),
+        ("microsteps_per_rad", 1.0, nan),
+        ("ready", 1500, 1501),
+        ("homing_fast", 262_144, 262_145),  # the joint's velocity
+        ("homing_fast", 328, 327),  # its way within ten minutes
+        ("homing_slow", 262_144, 262_145),
+        ("homing_slow", 328, 327),
+        ("homing_backoff", 1, 0),
+        ("homing_max_travel", 1, 0),
+        ("homing_max_travel", 1 << 20, (1 << 20) + 1),
+        ("homing_switch", -(1 << 20), -(1 << 20) - 1),
+    ],
+)
+def test_a_configuration_that_makes_no_sense_is_refused(make_configure, field, taken, refused):
+    good = replace(
+        make_configure(),
+        velocity=(262_144,) * 2,
+        acceleration=(1 << 24,) * 2,
+        homing_fast=(131_072,) * 2,
+        homing_slow=(131_072,) * 2,
+    )
+    for value, is_taken in ((taken, True), (refused, False)):
+        values = (getattr(good, field)[0], value)
+        board = SimulatedBoard(start_homed=True)
+        board.receive(replace(good, **{field: values}))
+        answer = next(m for m in board.take() if isinstance(m, Configured | Refused))
+        if is_taken:
+            assert isinstance(answer, Configured), value
+        else:
+            assert answer == Refused("configure", Refusal.CONFIGURATION), value
+            assert board.state is BoardState.DISABLED
+
+
 @pytest.mark.parametrize(
     "changes",
     [
-        {"joint_min": (1.6, 0.0)},
-        {"velocity": (0.0, 1.0)},
-        {"velocity": (101.0, 1.0)},  # more than a step every other tick
-        {"velocity": (1.0,)},
-        {"acceleration": (float("nan"), 1.0)},
-        {"microsteps_per_rad": (float("inf"), 1.0)},
-        {"microsteps_per_rad": (1.0,) * 5},
-        {"ready": (2.0, 0.0)},
         {"homing_direction": 0},
-        {"homing_fast": -1.0},
         {"workspace_radius": 0.0},
-        {"kind": "rotary_delta", "geometry": (("upper_arm", (1.0, 1.0, 1.0)),)},
+        {"workspace_radius": nan},
+        {"workspace_x": (1.0, 1.0)},
+        {"workspace_z": (nan, 1.0)},
+        {"tool_offset": (0.0, inf, 0.0)},
+        {"forearm": (338.0, 0.0, 338.0)},
+        {"upper_arm": (125.0, 125.0, -1.0)},
+        {"azimuth": (0.0, nan, 4.2)},
+        {"forearm": (10.0, 10.0, 10.0)},  # they do not meet at the ready pose
     ],
     ids=str,
 )
-def test_a_configuration_that_makes_no_sense_is_refused(make_configure, changes):
-    from deltaviz.link.board import SimulatedBoard
-
+def test_arms_that_make_no_sense_are_refused(changes):
     board = SimulatedBoard(start_homed=True)
-    board.receive(replace(make_configure(), **changes))
+    board.receive(replace(configure_from(load_robot("stm32")), **changes))
     assert Refused("configure", Refusal.CONFIGURATION) in board.take()
     assert board.state is BoardState.DISABLED
+
+
+def test_arms_are_those_of_three_joints(make_configure):
+    board = SimulatedBoard(start_homed=True)
+    board.receive(replace(make_configure(), kind=RobotKind.ROTARY_DELTA))
+    assert Refused("configure", Refusal.CONFIGURATION) in board.take()
 
 
 def test_another_configuration_needs_a_disabled_board(bench, make_configure):

@@ -57,8 +57,8 @@ def test_it_ends_at_the_ready_pose_and_knows_it(
     for count, ready, true in zip(
         bench.board.counts, configure.ready, bench.board.plant.theta, strict=True
     ):
-        assert count / PER_RAD == pytest.approx(ready, abs=MICROSTEP / 2)
-        assert true == pytest.approx(ready, abs=1.5 * MICROSTEP)
+        assert count == ready
+        assert true * PER_RAD == pytest.approx(ready, abs=1.5)
 
 
 def test_it_keeps_its_accelerations(make_bench, accelerations):
