@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-import tomllib
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Annotated, Literal, Self
+from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
+import msgspec  # quick to load, which the simulated board's process has to be
+from msgspec import Meta, Struct
 
 TEXT_MAX = 31  # characters
 FRAME_OVERHEAD = 6  # bytes: type, sequence, CRC-32
@@ -32,20 +32,15 @@ class FieldType:
     count: Literal["joints"] | int | None
 
 
-class FieldDescription(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-    name: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$")]
+class FieldDescription(Struct, frozen=True, forbid_unknown_fields=True):
+    name: Annotated[str, Meta(pattern=r"^[a-z][a-z0-9_]*$")]
     type: str
     unit: str | None = None
     doc: str | None = None
 
-    @field_validator("type")
-    @classmethod
-    def _known(cls, value: str) -> str:
-        if not _TYPE.fullmatch(value):
-            raise ValueError(f"there is no type {value!r}")
-        return value
+    def __post_init__(self) -> None:
+        if not _TYPE.fullmatch(self.type):
+            raise ValueError(f"there is no type {self.type!r}")
 
     @property
     def parsed(self) -> FieldType:
@@ -59,16 +54,13 @@ class FieldDescription(BaseModel):
         )
 
 
-class MessageDescription(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-    name: Annotated[str, Field(pattern=r"^[A-Z]\w*$")]
-    type: Annotated[int, Field(ge=0x01, le=0xFF)]
-    sender: Annotated[Literal["host", "board"], Field(alias="from")]
+class MessageDescription(Struct, frozen=True, forbid_unknown_fields=True):
+    name: Annotated[str, Meta(pattern=r"^[A-Z]\w*$")]
+    type: Annotated[int, Meta(ge=0x01, le=0xFF)]
+    sender: Literal["host", "board"] = msgspec.field(name="from")
     fields: tuple[FieldDescription, ...]
 
-    @model_validator(mode="after")
-    def _check(self) -> Self:
+    def __post_init__(self) -> None:
         if (self.type >= 0x80) != (self.sender == "board"):
             raise ValueError(f"{self.name}: types from 0x80 on are the board's")
         counted = False
@@ -77,7 +69,6 @@ class MessageDescription(BaseModel):
             counted = counted or parsed.base == "joints"
             if parsed.count == "joints" and not counted:
                 raise ValueError(f"{self.name}.{field.name}: its length stands behind it")
-        return self
 
     @property
     def snake(self) -> str:
@@ -92,27 +83,23 @@ class MessageDescription(BaseModel):
         )
 
 
-class Description(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
+class Description(Struct, frozen=True, forbid_unknown_fields=True):
     version: int
     joints_max: int
     payload_max: int
     command_repeat_ms: int
     message: tuple[MessageDescription, ...]
 
-    @model_validator(mode="after")
-    def _check(self) -> Self:
+    def __post_init__(self) -> None:
         for values in ([m.name for m in self.message], [m.type for m in self.message]):
             if len(set(values)) != len(values):
                 raise ValueError(f"not unique: {values}")
         for message in self.message:
             if message.size_max(self.joints_max) > self.payload_max:
                 raise ValueError(f"{message.name} may become longer than a payload")
-        return self
 
 
 @cache
 def load_description() -> Description:
-    text = Path(__file__).with_name("protocol.toml").read_text(encoding="utf-8")
-    return Description.model_validate(tomllib.loads(text))
+    text = Path(__file__).with_name("protocol.toml").read_bytes()
+    return msgspec.toml.decode(text, type=Description)
