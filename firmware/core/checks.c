@@ -22,7 +22,7 @@ static const struct dv_objection NONE = {0, -1};
 /* The motion to be judged; positions are in microsteps from its start. */
 struct motion {
     const struct dv_parameters *parameters;
-    const int32_t *start; /* 2^-10 microsteps */
+    const int32_t *start, *end; /* 2^-10 microsteps */
     struct dv_joint_cubic cubic[DV_JOINTS_MAX];
     float brake_end[DV_JOINTS_MAX];
 };
@@ -69,20 +69,20 @@ static void find_brake_ends(struct motion *motion)
     }
 }
 
-/* From the start to a limit: an integer difference, 0 for a start beyond it. */
-static float room(int32_t limit, int32_t start, int sign)
-{
-    int64_t distance = sign * ((int64_t)limit - start) + JOINT_SLACK;
-    return dv_to_float(distance > 0 ? distance : 0) * P_STEP + POSITION_ERROR;
-}
-
+/* Knots are judged as integers, so that no number of segments can creep beyond a limit. */
 static struct dv_objection joint_objection(const struct motion *motion)
 {
     const struct dv_configure *configure = &motion->parameters->configure;
     for (int joint = 0; joint < configure->joints; joint++) {
-        float low = -room(configure->joint_min[joint], motion->start[joint], -1);
-        float high = room(configure->joint_max[joint], motion->start[joint], 1);
-        if (!dv_joint_cubic_stays_within(&motion->cubic[joint], low, high)) {
+        int64_t start = motion->start[joint], end = motion->end[joint];
+        int64_t least = (int64_t)configure->joint_min[joint] - JOINT_SLACK;
+        int64_t most = (int64_t)configure->joint_max[joint] + JOINT_SLACK;
+        least = least < start ? least : start;
+        most = most > start ? most : start;
+        float low = dv_to_float(least - start) * P_STEP - POSITION_ERROR;
+        float high = dv_to_float(most - start) * P_STEP + POSITION_ERROR;
+        if (end < least || end > most
+            || !dv_joint_cubic_stays_within(&motion->cubic[joint], low, high)) {
             return objection(DV_REFUSAL_JOINT_LIMIT, joint);
         }
         if (!(low <= motion->brake_end[joint] && motion->brake_end[joint] <= high)) {
@@ -150,7 +150,7 @@ struct dv_objection dv_check_segment(const struct dv_parameters *parameters, uin
         || milliticks > (uint64_t)tick_hz * DV_SEGMENT_MAX_MS) {
         return objection(DV_REFUSAL_TIME, -1);
     }
-    struct motion motion = {.parameters = parameters, .start = p0};
+    struct motion motion = {.parameters = parameters, .start = p0, .end = segment->p};
     for (int joint = 0; joint < parameters->configure.joints; joint++) {
         motion.cubic[joint] = dv_joint_cubic(p0[joint], segment->p[joint], v0[joint],
                                              segment->v[joint], segment->duration, tick_hz);

@@ -1,0 +1,40 @@
+/* Judges cases from standard input, to the end; writes how many there were, how many
+ * configurations were taken, and how many segments accepted.
+ */
+#include "checks.h"
+#include "kinematics.h"
+
+#include <stdio.h>
+
+struct test_case {
+    struct dv_configure configure;
+    uint32_t tick_hz;
+    int32_t p0[DV_JOINTS_MAX];
+    int32_t v0[DV_JOINTS_MAX];
+    struct dv_segment segment;
+    float pose[3];
+};
+
+int main(void)
+{
+    struct test_case now;
+    unsigned judged = 0, taken = 0, accepted = 0;
+    while (fread(&now, sizeof now, 1, stdin) == 1) {
+        struct dv_parameters parameters;
+        float result[3];
+        judged++;
+        if (!dv_parameters_from(&parameters, &now.configure, now.tick_hz)) {
+            continue;
+        }
+        taken++;
+        dv_forward(&parameters, now.pose, result);
+        dv_inverse(&parameters, now.pose, result);
+        for (int homed = 0; homed < 2; homed++) {
+            struct dv_objection found = dv_check_segment(&parameters, now.tick_hz, now.p0, now.v0,
+                                                         &now.segment, homed == 1);
+            accepted += found.reason == 0;
+        }
+    }
+    printf("%u %u %u\n", judged, taken, accepted);
+    return 0;
+}
