@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from deltaviz.link.board import SimulatedBoard
+from deltaviz.link.board.port import BoardPort
 from deltaviz.link.messages import BoardMessage, HostMessage
 from deltaviz.link.rules import TICK_HZ
+from deltaviz.link.wire.channel import Channel
 
 
 class MemoryTransport:
@@ -14,38 +16,60 @@ class MemoryTransport:
 
     def __init__(self, board: SimulatedBoard, clock: Callable[[], float]) -> None:
         self.board = board
-        self._clock = clock
-        self._began = clock()
-        self._ticks = 0
-        self._closed = False
+        self._stream = _MemoryStream(board, clock)
+        self._channel = Channel(self._stream, clock)
 
     @property
     def closed(self) -> bool:
-        return self._closed
+        return self._stream.ended is not None
 
     @property
     def problem(self) -> str | None:
         return None
 
     def send(self, message: HostMessage) -> None:
-        if not self._closed:
-            self._catch_up()
-            self.board.receive(message)
+        self._channel.send(message)
 
     def receive(self) -> list[BoardMessage]:
-        if self._closed:
-            return []
-        self._catch_up()
-        return self.board.take()
+        return self._channel.receive()
 
     def fileno(self) -> int:
         return -1
 
     def close(self) -> None:
-        self._closed = True
+        self._channel.close()
+
+
+class _MemoryStream:
+    """The board at the other end hears each byte at the time at which it is written."""
+
+    def __init__(self, board: SimulatedBoard, clock: Callable[[], float]) -> None:
+        self.ended: str | None = None
+        self._port = BoardPort(board)
+        self._clock = clock
+        self._began = clock()
+        self._ticks = 0
+
+    def write(self, data: bytes) -> int:
+        if self.ended is None:
+            self._catch_up()
+            self._port.feed(data)
+        return len(data)
+
+    def read(self) -> bytes:
+        if self.ended is not None:
+            return b""
+        self._catch_up()
+        return b"".join(self._port.take())
+
+    def fileno(self) -> int:
+        return -1
+
+    def close(self) -> None:
+        self.ended = "it was closed"
 
     def _catch_up(self) -> None:
         due = round((self._clock() - self._began) * TICK_HZ)
         if due > self._ticks:
-            self.board.advance(due - self._ticks)
+            self._port.board.advance(due - self._ticks)
             self._ticks = due

@@ -19,6 +19,7 @@ STOP_REPEAT = 0.010  # s
 KEEP_PERIOD = 0.025  # s, well within the board's lease
 HELLO_REPEAT = 0.5  # s; a board that is still starting misses the first
 ANSWER_WITHIN = 1.0  # s, for what the board answers at once
+NEVER_ARMED = 0.1  # s of board time after a stop: an Arm before it has come by then or was lost
 STALE = LEASE_MS / 1000  # s: telemetry older than this can begin and continue no motion
 
 
@@ -61,6 +62,7 @@ class Session:
         self._underrun_epoch: int | None = None
         self._stop_next: float | None = None
         self._stopping_epoch: int | None = None
+        self._stop_tick = 0
         self._estop_next: float | None = None
         self._kept = float("-inf")
         self._out: list[m.HostMessage] = [m.Hello(m.PROTOCOL_VERSION)]
@@ -187,9 +189,11 @@ class Session:
         """Brake and halt; repeated until the board says that it rests."""
         if not self.stopping:
             self._stopping_epoch = None if self._flight is None else self._flight.epoch
+            self._stop_tick = 0 if self.telemetry is None else self.telemetry.now
         self._flight = None
         self.stopped = None
-        self._pending.pop("home", None)
+        for overruled in ("home", "enable", "reset"):  # they may never be answered
+            self._pending.pop(overruled, None)
         self._out.append(m.Stop())
         self._stop_next = now + STOP_REPEAT
 
@@ -299,12 +303,23 @@ class Session:
             self._flight.acknowledge(telemetry)
         if self.phase is Phase.READY and m.TelemetryFlags.CONFIGURED not in telemetry.flags:
             self._fail("The board has restarted. See to its power supply, then connect again.")
+        if self.stopping and self._was_never_armed(telemetry):
+            self._stopping_epoch = None
         if telemetry.state in (m.BoardState.ESTOP, m.BoardState.FAULT):
             self._stop_next = None
             self._flight = None
             self._pending.pop("home", None)
         if telemetry.state is m.BoardState.ESTOP:
             self._estop_next = None
+
+    def _was_never_armed(self, telemetry: m.Telemetry) -> bool:
+        """The stop overruled an Arm that was lost on its way: no answer will bear its epoch."""
+        waited = since(telemetry.now, self._stop_tick)
+        return (
+            self._board is not None
+            and telemetry.epoch != self._stopping_epoch
+            and waited >= NEVER_ARMED * self._board.tick_hz
+        )
 
     def _has_stopped(self, stopped: m.Stopped) -> None:
         """Late answers to a stop before the present epoch say nothing about this one."""

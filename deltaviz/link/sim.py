@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import Self
 
 from deltaviz.link.messages import BoardMessage, HostMessage
-from deltaviz.link.pickles import PickleSocket
+from deltaviz.link.socket_stream import SocketStream
+from deltaviz.link.wire.channel import Channel
 
 _PATIENCE = 1.5  # s: the lease (150 ms) and the longest brake, and some
 
@@ -18,7 +19,7 @@ _PATIENCE = 1.5  # s: the lease (150 ms) and the longest brake, and some
 class SimTransport:
     """The host's end. `start` returns before the board has begun to answer."""
 
-    def __init__(self, process: subprocess.Popen[bytes], board: PickleSocket) -> None:
+    def __init__(self, process: subprocess.Popen[bytes], board: Channel) -> None:
         self._process = process
         self._board = board
         self._closed = False
@@ -41,7 +42,7 @@ class SimTransport:
                 start_new_session=True,  # a Ctrl-C in the terminal is for the host to judge
                 env=os.environ | {"PYTHONPATH": _python_path()},
             )
-        return cls(process, PickleSocket(ours))
+        return cls(process, Channel(SocketStream(ours)))
 
     @property
     def pid(self) -> int:

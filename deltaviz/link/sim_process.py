@@ -14,8 +14,10 @@ import sys
 import time
 
 from deltaviz.link.board import SimulatedBoard
-from deltaviz.link.pickles import PickleSocket
+from deltaviz.link.board.port import BoardPort
 from deltaviz.link.rules import TELEMETRY_MS, TICK_HZ
+from deltaviz.link.socket_stream import SocketStream
+from deltaviz.link.wire.stream import Outbox
 
 MOST_AT_ONCE = TICK_HZ // 50  # 20 ms
 AT_ONCE = TICK_HZ // 1000  # 1 ms: a board hears its host while it moves, also when it catches up
@@ -43,7 +45,8 @@ class Pace:
         return ticks
 
 
-def run(board: SimulatedBoard, host: PickleSocket) -> None:
+def run(board: SimulatedBoard, host: SocketStream) -> None:
+    port, outbox = BoardPort(board), Outbox(host)
     parent = os.getppid()
     pace = Pace(time.monotonic())
     poller = select.poll()
@@ -51,15 +54,14 @@ def run(board: SimulatedBoard, host: PickleSocket) -> None:
     while True:
         due = pace.due(time.monotonic())
         while True:
-            for message in host.receive():
-                board.receive(message)
+            port.feed(host.read())
             board.advance(min(due, AT_ONCE))
-            for answer in board.take():
-                host.send(answer)
+            outbox.put(port.take())
             due -= AT_ONCE
             if due <= 0:
                 break
-        if host.ended is None and os.getppid() == parent:
+        listened_to = host.ended is None and not outbox.overflowed and os.getppid() == parent
+        if listened_to:
             poller.poll(TELEMETRY_MS)
         elif board.moving:
             time.sleep(TELEMETRY_MS / 1000)
@@ -72,7 +74,7 @@ def main(arguments: list[str]) -> None:
     descriptor, *options = arguments
     boot = int.from_bytes(os.urandom(4), "little")
     board = SimulatedBoard(start_homed="homed" in options, boot=boot)
-    host = PickleSocket(socket.socket(fileno=int(descriptor)))
+    host = SocketStream(socket.socket(fileno=int(descriptor)))
     run(board, host)
     host.close()
 

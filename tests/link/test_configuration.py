@@ -1,8 +1,7 @@
-"""What a board is told, and the number that names it; the links inside one process."""
+"""What a board is told, and the number that names it."""
 
 from __future__ import annotations
 
-import socket
 import subprocess
 import sys
 from dataclasses import fields, replace
@@ -14,17 +13,7 @@ import pytest
 from deltaviz import load_robot
 from deltaviz.link.board import SimulatedBoard
 from deltaviz.link.configuration import configuration_hash, configure_from
-from deltaviz.link.memory import MemoryTransport
-from deltaviz.link.messages import (
-    BoardState,
-    Configured,
-    Hello,
-    HelloReply,
-    Options,
-    RobotKind,
-    Telemetry,
-)
-from deltaviz.link.pickles import PickleSocket
+from deltaviz.link.messages import BoardState, Configured, Options, RobotKind
 from deltaviz.link.wire.codec import decode_host, encode
 
 PRESETS = ["stm32", "trossen", "zheng2023", "deltadraw"]
@@ -134,61 +123,3 @@ def test_a_ready_pose_at_the_joint_limit_is_inside_it():
 
 def test_presets_differ():
     assert len({configuration_hash(configure_from(load_robot(name))) for name in PRESETS}) == 4
-
-
-class Clock:
-    def __init__(self) -> None:
-        self.now = 100.0
-
-    def __call__(self) -> float:
-        return self.now
-
-
-def test_a_board_in_memory_follows_the_clock_it_is_given():
-    clock = Clock()
-    link = MemoryTransport(SimulatedBoard(), clock)
-    clock.now += 0.012
-    told = link.receive()
-    assert [m.now for m in told if isinstance(m, Telemetry)] == [1000, 2000]
-    link.send(Hello(1))
-    assert any(isinstance(m, HelloReply) for m in link.receive())
-    link.close()
-    assert link.closed
-    assert link.receive() == []
-
-
-@pytest.fixture
-def pair():
-    left, right = socket.socketpair()
-    ends = PickleSocket(left), PickleSocket(right)
-    yield ends
-    for end in ends:
-        end.close()
-
-
-def test_messages_arrive_whole_and_in_order(pair):
-    left, right = pair
-    for number in range(500):
-        left.send(("message", number, "x" * number))
-    got = []
-    while len(got) < 500:
-        got += right.receive()
-        left.receive()  # sends on what the socket had no room for
-    assert [message[1] for message in got] == list(range(500))
-
-
-def test_what_was_sent_before_the_end_still_arrives(pair):
-    left, right = pair
-    left.send("last words")
-    left.close()
-    assert right.receive() == ["last words"]
-    assert right.ended is not None
-    right.send("to nobody")
-    assert right.receive() == []
-
-
-def test_a_peer_that_stops_reading_ends_the_connection_instead_of_blocking(pair):
-    left, _ = pair
-    for _ in range(400):
-        left.send("x" * 10_000)
-    assert left.ended is not None

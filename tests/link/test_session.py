@@ -244,6 +244,37 @@ def test_a_stop_after_a_refused_arming_is_answered_by_the_old_epoch(session: Ses
     assert not session.stopping
 
 
+def test_a_stop_that_overruled_a_lost_arming_is_answered_by_the_old_epoch(
+    session: Session,
+) -> None:
+    """100 ms of board time later, an Arm that came before the stop is not under way any more."""
+    session.begin()
+    session.stop(10.0)
+    old = m.Stopped(epoch=65534, cause=m.StopCause.HOST_STOP, now=1000, counts=(100, -60))
+    session.receive(telemetry(now=1000 + 100 * MS - 1), 10.1)
+    session.receive(old, 10.1)
+    assert session.stopping
+    session.receive(telemetry(now=1000 + 100 * MS), 10.1)
+    session.receive(old, 10.1)
+    assert not session.stopping
+
+
+def test_a_stop_waits_for_its_own_epoch_however_long_that_brakes(session: Session) -> None:
+    session.begin()
+    session.stop(10.0)
+    session.receive(telemetry(now=1000 + 500 * MS, epoch=65535), 10.5)
+    session.receive(m.Stopped(epoch=65534, cause=m.StopCause.HOST_STOP, now=0, counts=()), 10.5)
+    assert session.stopping
+
+
+def test_what_a_stop_overrules_need_not_be_answered(session: Session) -> None:
+    session.enable(10.0, on=True)
+    session.stop(10.1)
+    session.receive(m.Stopped(epoch=0, cause=m.StopCause.HOST_STOP, now=0, counts=()), 10.1)
+    session.tick(12.0)
+    assert session.phase is Phase.READY
+
+
 def test_an_estop_is_repeated_until_it_is_reported(session: Session) -> None:
     session.estop(10.0)
     session.tick(10.011)

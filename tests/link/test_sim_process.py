@@ -87,6 +87,7 @@ def test_it_answers_and_starts_homed_at_the_ready_pose(link):
 def test_without_homing_it_starts_disabled():
     link = SimTransport.start(homed=False)
     try:
+        link.send(Hello(1))
         link.send(configure_from(load_robot("stm32")))
         told = hear(link, Telemetry, lambda m: m.counts)
         assert told.state is BoardState.DISABLED
@@ -121,6 +122,7 @@ def move(link):
 
     On a loaded machine the host may be too late for the board: then it tries again.
     """
+    link.send(Hello(1))
     link.send(configure_from(load_robot("stm32")))
     hear(link, Telemetry, lambda m: m.counts)
     for epoch in range(1, 50):
