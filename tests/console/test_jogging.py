@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Callable
 from itertools import pairwise
@@ -44,17 +45,46 @@ def page(open_page: Callable[..., Page]) -> Page:
 
 
 @pytest.fixture
-def holding(page: Page, machine: Any, wait_until: Callable[..., Any]) -> Page:
+def hold_until_alive(
+    machine: Any, wait_until: Callable[..., Any]
+) -> Callable[[Callable[[], object], Callable[[], object]], None]:
+    """Presses until the jog lives: on a busy machine a page may sleep through its lease, or have
+    lost the focus for a moment, and has then rightly let go."""
+
+    def hold_(press: Callable[[], object], release: Callable[[], object]) -> None:
+        for _ in range(5):
+            press()
+            with contextlib.suppress(AssertionError):
+                wait_until(
+                    lambda: kinds(machine).count("jog") >= 2 or "jog_end" in kinds(machine), 2.0
+                )
+            if "jog" in kinds(machine) and "jog_end" not in kinds(machine):
+                return
+            release()
+            machine.forget()
+        raise AssertionError("the page sleeps all the time")
+
+    return hold_
+
+
+@pytest.fixture
+def holding(page: Page, hold_until_alive: Callable[..., None]) -> Page:
     """A page on which the pointer holds X+, alive."""
-    for _ in range(5):
-        hold(page)
-        wait_until(lambda: kinds(machine).count("jog") >= 2 or "jog_end" in kinds(machine))
-        if "jog_end" not in kinds(machine):
-            return page
-        # On a busy machine a page may sleep through its lease, and has then rightly let go.
-        page.mouse.up()
-        machine.forget()
-    raise AssertionError("the page sleeps all the time")
+    hold_until_alive(lambda: hold(page), page.mouse.up)
+    return page
+
+
+@pytest.fixture
+def holding_key(page: Page, hold_until_alive: Callable[..., None]) -> Callable[..., None]:
+    """Presses keys, the last of which begins a jog; returns once it is alive."""
+
+    def hold_keys(*keys: str) -> None:
+        hold_until_alive(
+            lambda: [page.keyboard.down(key) for key in keys],
+            lambda: [page.keyboard.up(key) for key in reversed(keys)],
+        )
+
+    return hold_keys
 
 
 def test_a_held_button_sends_signs_of_life_until_it_is_let_go(
@@ -252,12 +282,10 @@ def test_joints_have_number_keys(page: Page, machine: Any, wait_until: Callable[
 
 
 def test_releasing_the_modifier_of_a_press_ends_it(
-    page: Page, machine: Any, wait_until: Callable[..., Any]
+    page: Page, machine: Any, wait_until: Callable[..., Any], holding_key: Callable[..., None]
 ) -> None:
     page.get_by_role("button", name="Joints").click()
-    page.keyboard.down("Shift")
-    page.keyboard.down("Digit1")
-    wait_until(lambda: "jog" in kinds(machine))
+    holding_key("Shift", "Digit1")
     page.keyboard.up("Shift")
     assert_ended(page, machine, wait_until)
 
@@ -280,10 +308,9 @@ def test_a_repeating_key_starts_once(
 
 
 def test_only_the_key_that_began_a_jog_ends_it(
-    page: Page, machine: Any, wait_until: Callable[..., Any]
+    page: Page, machine: Any, wait_until: Callable[..., Any], holding_key: Callable[..., None]
 ) -> None:
-    page.keyboard.down("KeyD")
-    wait_until(lambda: "jog" in kinds(machine))
+    holding_key("KeyD")
     page.keyboard.down("KeyW")
     page.keyboard.up("KeyW")
     machine.forget()
