@@ -5,6 +5,12 @@ in 2^-10 microsteps, velocities in 2^-16 microsteps per millisecond, counts in m
 has one entry per joint. A count is the whole number nearest to the position. Once homed, joint
 angle = count / microsteps_per_rad; before that, counts begin at 0 where the board was switched on.
 
+Board time is cut into pieces of 1 ms, counted from power-up. Where one begins, at its boundary, the
+board looks at its inputs, judges the lease, notices rest, and plans the piece after it: a straight
+line in time to where the path leads at that piece's end. So what moves is planned 1 to 2 ms ahead,
+and every brake but that of an underrun begins where the plan ends; state and cause change at once.
+EStop cuts the present piece, too.
+
 What the board answers: `Refused(command, reason)` or `Done(command)` to Enable, Arm, Reset, Tool
 and Home (Done("home") comes when it stands homed at the ready pose); `Configured` to Configure;
 `HelloReply` to Hello; `Stopped` to Stop. A Segment is answered only when refused, a Keep never.
@@ -134,9 +140,10 @@ class Configure:
     answered in every state.
 
     Refused (CONFIGURATION): what is not finite, but for the bounds of the workspace; what has to be
-    positive and is not; a ready pose outside the joint limits or out of reach; more than one step
-    every other tick; homing faster than the joint's velocity, further than 2^20 microsteps or in
-    more than ten minutes; a brake from top velocity that takes more than a second.
+    positive and is not; a ready pose outside the joint limits or out of reach; more than a step
+    every other tick, less 0.2 % for the slack of speeds; homing faster than the joint's velocity,
+    further than 2^20 microsteps or in more than ten minutes; a brake from top velocity that takes
+    more than a second.
     """
 
     kind: RobotKind
@@ -176,7 +183,9 @@ class Enable:
 
 @dataclass(frozen=True, slots=True)
 class Home:
-    """Only at rest, and with a live lease (Keep), which homing needs as any motion does."""
+    """Only at rest, and with a live lease (Keep), which homing needs as any motion does. Refused
+    with COUNTS beyond 2^30 microsteps: whatever drove it there, switch the board off and on.
+    """
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,8 +193,8 @@ class Arm:
     """Opens an epoch, at rest only: the first segment starts at exactly `counts`.
 
     `epoch` must be 1 to 32767 after the board's last one (`HelloReply.last_epoch`), `counts` the
-    board's own, `t_start` the board's present tick as the host knows it (at most 150 ms ago and
-    100 ms ahead). The next segment has index 0.
+    board's own (and within what a knot can say), `t_start` the board's present tick as the host
+    knows it (at most 150 ms ago and 100 ms ahead). The next segment has index 0.
     """
 
     epoch: int
@@ -201,11 +210,13 @@ class Segment:
     - After a knot that moves, the nominal start must equal the `t_end` of the segment before.
     - After a knot at rest (or Arm) there may be a pause: the nominal start must not be before the
       last `t_end` (or, once the board stands still, not more than 150 ms before now), nor more than
-      100 ms after the queue's end or now. The board waits for the nominal start; one that has
-      passed means at once, and all that follows without a pause is late by as much. So the host
-      takes the board's present tick, as it knows it, as the start of a motion.
-    An epoch whose queue ran dry at rest stays ARMED. A queue that ends in a moving knot brakes
-    (UNDERRUN). `Telemetry.t_queue_end` tells when the queue really ends.
+      100 ms after the queue's end or now. The board waits for the nominal start; one that lies
+      within what is planned means where that ends, and all that follows without a pause is late by
+      as much. So the host takes the board's present tick, as it knows it, as the start of a motion.
+    An epoch whose queue ran dry at rest stays ARMED. A queue that ends in a moving knot brakes from
+    that knot on (UNDERRUN); the board knows it when it plans the piece in which the knot lies, so
+    the next segment has to be there 2 ms before. `Telemetry.t_queue_end` tells when the queue
+    really ends.
 
     Refused, and nothing else happens: not ARMED, another epoch, an index that is not the next one,
     no place in the queue (send it again). Everything else that is wrong with a segment brakes,
@@ -225,8 +236,9 @@ class Segment:
 class Keep:
     """Extends the board's lease: `seen` is the newest telemetry tick that the host had.
 
-    The lease ends 150 ms after `seen`; a motion under way then brakes (LEASE). A `seen` in the
-    future, or older than the one that counts now, changes nothing.
+    The lease ends 150 ms after `seen`; a motion under way brakes (LEASE), from the last boundary on
+    that is not later than that. A `seen` in the future, or older than the one that counts now,
+    changes nothing.
     """
 
     seen: int
@@ -234,7 +246,9 @@ class Keep:
 
 @dataclass(frozen=True, slots=True)
 class Stop:
-    """Brakes and halts, in every state. Answered by Stopped as soon as the board is at rest."""
+    """Brakes and halts, in every state. Answered by Stopped as soon as the board is at rest: at the
+    first boundary from which on nothing moves and nothing is planned to.
+    """
 
 
 @dataclass(frozen=True, slots=True)
@@ -249,7 +263,7 @@ class Reset:
 
 @dataclass(frozen=True, slots=True)
 class Tool:
-    """Refused while DISABLED, in ESTOP and in FAULT."""
+    """Refused while DISABLED, in ESTOP and in FAULT. It is off whenever the drivers are."""
 
     on: bool
     servo_angle: float  # rad
@@ -280,7 +294,7 @@ class Configured:
 
 @dataclass(frozen=True, slots=True)
 class Refused:
-    """A command that was not carried out: which, and why."""
+    """A command that was not carried out: which, and why. Index 65535 is told as none."""
 
     command: str
     reason: Refusal
@@ -297,7 +311,7 @@ class Done:
 
 @dataclass(frozen=True, slots=True)
 class Telemetry:
-    """Every 5 ms of board time, and whenever state, fault or inputs change.
+    """Every 5 ms of board time, at boundaries, and whenever state, fault or inputs change.
 
     `epoch` is the last one armed, `last_index` the last segment accepted in it (65535: none yet).
     `t_queue_end` is when the queue ends, `now` when it is empty; the host's own estimate of it is

@@ -6,6 +6,7 @@
 
 #define TO_Q32 8 /* from 2^-24 */
 #define LEAST_ACCELERATION 256 /* 2^-24 microsteps/ms²: 2^16 in those of the brake */
+#define TWO_TICKS_A_STEP 2004u /* in 1/1000 ticks, with room for the slack of speeds */
 #define BRAKE_MS_MAX 1000 /* so that the brake's arithmetic fits 64 bits */
 #define HOMING_MICROSTEPS_MAX (1 << 20)
 #define HOMING_MS_MAX 600000
@@ -35,7 +36,7 @@ static bool speeds_make_sense(const struct dv_configure *c, int joint, uint32_t 
 {
     uint64_t velocity = c->velocity[joint], acceleration = c->acceleration[joint];
     return velocity > 0 && c->unhomed_velocity[joint] > 0
-        && velocity * 2000 <= (uint64_t)tick_hz << 16 /* a step every other tick */
+        && velocity * TWO_TICKS_A_STEP <= (uint64_t)tick_hz << 16
         && acceleration >= LEAST_ACCELERATION && velocity << 8 <= acceleration * BRAKE_MS_MAX;
 }
 
@@ -87,7 +88,7 @@ static bool geometry_makes_sense(const struct dv_configure *c)
 
 static bool makes_sense(const struct dv_configure *c, uint32_t tick_hz)
 {
-    if (tick_hz < DV_TICK_HZ_MIN || tick_hz > DV_TICK_HZ_MAX || c->joints < 1
+    if (tick_hz < DV_TICK_HZ_MIN || tick_hz > DV_TICK_HZ_MAX || tick_hz % 1000 != 0 || c->joints < 1
         || c->joints > DV_JOINTS_MAX || (c->homing_direction != 1 && c->homing_direction != -1)) {
         return false;
     }

@@ -10,7 +10,7 @@
 #define DV_ARMS 3 /* of a rotary delta */
 
 #define DV_TICK_HZ_MIN 1000u
-#define DV_TICK_HZ_MAX 1000000u /* up to here the arithmetic of `dv_joint_cubic` fits 64 bits */
+#define DV_TICK_HZ_MAX 500000u /* up to here the arithmetic of paths and cubics fits 64 bits */
 
 struct dv_delta_arm {
     float offset; /* base radius minus effector radius, mm */

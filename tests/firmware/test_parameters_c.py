@@ -23,10 +23,12 @@ from tests.firmware.two_judges import TICK_HZ, gantry
 PRESETS = ["stm32", "trossen", "zheng2023", "deltadraw"]
 STM32 = configure_from(load_robot("stm32"))
 
+TOP_VELOCITY = TICK_HZ * 65536 // 2004  # a step in 2.004 ticks
+
 # What a field may be made of, by the type of its values. No geometry that only doubles can hold.
 I8 = st.sampled_from([-1, 0, 1])
 I32 = st.sampled_from([-(1 << 31), -(1 << 20), -1, 0, 1, 1 << 20, (1 << 31) - 1])
-U32 = st.sampled_from([0, 1, 255, 256, 100 << 16, (100 << 16) + 1, 1 << 20, (1 << 32) - 1])
+U32 = st.sampled_from([0, 1, 255, 256, TOP_VELOCITY, TOP_VELOCITY + 1, 1 << 20, (1 << 32) - 1])
 F32 = st.sampled_from([nan, inf, -inf, 0.0, -1.0, 0.5, 100.0, 509.25])
 SIGNED = {"joint_min", "joint_max", "homing_switch", "ready"}
 
@@ -91,7 +93,7 @@ def test_without_a_geometry():
     "changed",
     [
         {"joint_min": (STM32.joint_max[0], *STM32.joint_min[1:])},
-        {"velocity": ((100 << 16) + 1, *STM32.velocity[1:])},  # more than a step every other tick
+        {"velocity": (TOP_VELOCITY + 1, *STM32.velocity[1:])},  # more than a step every other tick
         {"acceleration": (255, *STM32.acceleration[1:])},
         {"acceleration": (STM32.velocity[0] * 256 // 1000 - 1,) * 3},  # brakes for over a second
         {"microsteps_per_rad": (inf, 509.0, 509.0)},

@@ -47,7 +47,7 @@ def bring_to(bench: Any, mode: Mode) -> None:
             assert bench.do(i.Stop(YOU, "Stop pressed")) == ACCEPTED
             bench.run(0.01)
         case Mode.FAULT:
-            bench.board.plant.forced_switches[0] = True
+            bench.board.plant.force_switch(0, True)
             bring_to(bench, Mode.HOMING)
             bench.run_until(lambda: bench.mode is Mode.FAULT, within=30)
         case Mode.ESTOP:

@@ -7,11 +7,11 @@ from math import isfinite
 from typing import Any
 
 from deltaviz.link.board.checks import Objection
-from deltaviz.link.board.core import ConfiguredBoard, Core
+from deltaviz.link.board.control import ConfiguredBoard, Control
 from deltaviz.link.board.parameters import Parameters, parameters_from
 from deltaviz.link.board.plant import Plant, power_up_pose
 from deltaviz.link.board.states import TRANSITIONS, BoardEvent
-from deltaviz.link.board.turn import arm_refusal, segment_refusal, well_formed, well_timed
+from deltaviz.link.board.turn import HOMING_COUNTS, arm_refusal, segment_refusal, well_timed, within
 from deltaviz.link.configuration import configuration_hash
 from deltaviz.link.messages import (
     PROTOCOL_VERSION,
@@ -58,9 +58,8 @@ class SimulatedBoard:
         now: int = 0,
         last_epoch: int = 0,
     ) -> None:
-        self.tool: Tool | None = None
-        self._core = Core(tick_hz=tick_hz, now=now, last_epoch=last_epoch)
-        self._reports = self._core.reports
+        self._control = Control(tick_hz=tick_hz, now=now, last_epoch=last_epoch)
+        self._reports = self._control.reports
         self._tick_hz = tick_hz
         self._start_homed = start_homed
         self._theta = theta
@@ -86,53 +85,57 @@ class SimulatedBoard:
 
     @property
     def now(self) -> int:
-        return self._core.now
+        return self._control.now
 
     @property
     def state(self) -> BoardState:
-        return self._core.state
+        return self._control.state
 
     @property
     def fault(self) -> Fault:
-        return self._core.fault
+        return self._control.fault
 
     @property
     def cause(self) -> StopCause:
-        return self._core.cause
+        return self._control.cause
 
     @property
     def homed(self) -> bool:
-        return self._core.homed
+        return self._control.homed
 
     @property
     def moving(self) -> bool:
-        return self._core.moving
+        return self._control.moving
 
     @property
     def counts(self) -> tuple[int, ...]:
-        return self._core.counts
+        return self._control.counts
+
+    @property
+    def tool(self) -> Tool:
+        return self._control.tool
 
     @property
     def positions(self) -> list[int]:
         """In 2^-32 microsteps, between counts: what tests and vectors compare."""
-        robot = self._core.robot
+        robot = self._control.robot
         return [] if robot is None else robot.drive.positions
 
     @property
     def plant(self) -> Plant:
         """The arms on the board's pins, once it is configured."""
-        if self._core.robot is None:
+        if self._control.robot is None:
             raise RuntimeError("the board was not configured, so it has no arms yet")
-        return self._core.robot.drive.plant
+        return self._control.robot.drive.plant
 
     # Time and messages.
 
     def advance(self, ticks: int) -> None:
         """Lets `ticks` of board time pass."""
-        self._core.advance(ticks)
+        self._control.advance(ticks)
 
     def receive(self, message: HostMessage) -> None:
-        kind, robot = type(message), self._core.robot
+        kind, robot = type(message), self._control.robot
         if not self._speaks and kind not in _WITHOUT_VERSION:
             self._reports.refuse(message, Refusal.VERSION)
         elif kind in self._handlers:
@@ -141,43 +144,39 @@ class SimulatedBoard:
             self._reports.refuse(message, Refusal.CONFIGURATION)
         else:
             self._robot_handlers[kind](message, robot)
-        self._core.report()
+        self._control.report()
 
     def take(self) -> list[BoardMessage]:
         """What the board has said since the last call."""
         return self._reports.take()
 
     def press_estop(self, pressed: bool) -> None:
-        """The e-stop input."""
-        self._core.estop_input = pressed
-        if pressed:
-            self._core.drivers_off(Fault.ESTOP_INPUT)
-        self._reports.changed = True
-        self._core.report()
+        """The e-stop input, as it reads from the next boundary on."""
+        self._control.estop_pin = pressed
 
     def _hello(self, message: Hello) -> None:
-        core = self._core
+        control = self._control
         self._speaks = message.version == PROTOCOL_VERSION
-        core.halt(StopCause.HOST_STOP)
-        core.lease.expire()
+        control.halt(StopCause.HOST_STOP)
+        control.lease.expire()
         self._reports.say(
             HelloReply(
                 version=PROTOCOL_VERSION,
                 board="simulated",
                 build="python",
-                joints=0 if core.robot is None else core.robot.parameters.joints,
+                joints=0 if control.robot is None else control.robot.parameters.joints,
                 tick_hz=self._tick_hz,
                 queue_places=QUEUE_PLACES,
                 boot=self._boot,
-                last_epoch=core.epoch,
-                homed=core.homed,
-                configuration=0 if core.robot is None else core.robot.hash,
-                last_stop=core.cause,
+                last_epoch=control.epoch,
+                homed=control.homed,
+                configuration=0 if control.robot is None else control.robot.hash,
+                last_stop=control.cause,
             )
         )
 
     def _configure(self, message: Configure) -> None:
-        robot = self._core.robot
+        robot = self._control.robot
         if robot is not None and configuration_hash(message) == robot.hash:
             self._reports.say(Configured(robot.hash))
             return
@@ -190,7 +189,7 @@ class SimulatedBoard:
             self._take_configuration(parameters)
 
     def _take_configuration(self, parameters: Parameters) -> None:
-        homed = self._start_homed and self._core.robot is None
+        homed = self._start_homed and self._control.robot is None
         configure = parameters.configure
         ready = [r / m for r, m in zip(configure.ready, configure.microsteps_per_rad, strict=True)]
         robot = ConfiguredBoard(
@@ -199,111 +198,115 @@ class SimulatedBoard:
             hash_=configuration_hash(configure),
             tick_hz=self._tick_hz,
         )
-        self._core.configure(robot, homed=homed)
+        self._control.configure(robot, homed=homed)
         self._reports.say(Configured(robot.hash))
 
     def _enable(self, message: Enable, robot: ConfiguredBoard) -> None:
-        core = self._core
+        control = self._control
         if message.on:
-            if core.estop_input:
+            if control.estop_input:
                 self._reports.refuse(message, Refusal.INPUT)
             elif self._allowed(message, BoardEvent.ENABLE):
-                core.change(BoardEvent.ENABLE)
+                control.change(BoardEvent.ENABLE)
                 self._reports.done(message)
-        elif core.moving:
-            core.disable_pending = True
-            core.halt(StopCause.DISABLED)
+        elif control.moving:
+            control.disable_pending = True
+            control.halt(StopCause.DISABLED)
         elif self._allowed(message, BoardEvent.DISABLE):
-            core.halt(StopCause.DISABLED)
-            core.change(BoardEvent.DISABLE)
-            core.homed = False
+            control.halt(StopCause.DISABLED)
+            control.change(BoardEvent.DISABLE)
+            control.homed = False
             self._reports.done(message)
 
     def _home(self, message: Home, robot: ConfiguredBoard) -> None:
-        core = self._core
+        control = self._control
         if not self._allowed(message, BoardEvent.HOME):
             return
-        if not core.idle:
+        if not control.idle:
             self._reports.refuse(message, Refusal.MOVING)
-        elif core.lease.remaining(core.now) is None:
+        elif not control.lease.alive:
             self._reports.refuse(message, Refusal.LEASE)
+        elif not within(control.counts, HOMING_COUNTS):
+            self._reports.refuse(message, Refusal.COUNTS)
         else:
-            core.begin_homing(robot)
+            control.begin_homing(robot)
 
     def _arm(self, message: Arm, robot: ConfiguredBoard) -> None:
-        core = self._core
+        control = self._control
         if not self._allowed(message, BoardEvent.ARM):
             return
         refusal = arm_refusal(
             message,
-            now=core.now,
-            last_epoch=core.epoch,
-            counts=core.counts,
-            idle=core.idle,
-            ticks_per_ms=core.ticks_per_ms,
+            now=control.now,
+            last_epoch=control.epoch,
+            counts=control.counts,
+            idle=control.idle,
+            ticks_per_ms=control.ticks_per_ms,
         )
         if refusal is not None:
             self._reports.refuse(message, refusal)
             return
-        core.open_epoch(robot, message)
+        control.open_epoch(robot, message)
         self._reports.done(message)
 
     def _segment(self, message: Segment, robot: ConfiguredBoard) -> None:
-        core = self._core
-        refusal = segment_refusal(message, state=core.state, epoch=core.epoch, queue=core.queue)
+        control = self._control
+        refusal = segment_refusal(
+            message, state=control.state, epoch=control.epoch, queue=control.queue
+        )
         if refusal is not None:
             self._reports.refuse(message, refusal)
             return
         objection = self._objection(message, robot)
         if objection is not None:
             self._reports.refuse(message, objection.reason, joint=objection.joint)
-            core.halt(StopCause.BAD_SEGMENT)
+            control.halt(StopCause.BAD_SEGMENT)
             return
-        core.lease.extend(message.seen, core.now)
-        if core.idle and core.lease.remaining(core.now) is None:
+        control.lease.extend(message.seen, control.now)
+        if control.idle and not control.lease.alive:
             self._reports.refuse(message, Refusal.LEASE)
-            core.halt(StopCause.LEASE)
+            control.halt(StopCause.LEASE)
             return
-        core.enqueue(message)
+        control.enqueue(message)
 
     def _objection(self, message: Segment, robot: ConfiguredBoard) -> Objection | None:
-        core = self._core
-        if not well_formed(message, joints=robot.parameters.joints):
+        control = self._control
+        if not len(message.p) == len(message.v) == robot.parameters.joints:
             return Objection(Refusal.CONFIGURATION)
-        idle_at = core.now if core.idle else None
+        idle_at = control.now if control.idle else None
         if not well_timed(
-            message, idle_at=idle_at, queue=core.queue, ticks_per_ms=core.ticks_per_ms
+            message, idle_at=idle_at, queue=control.queue, ticks_per_ms=control.ticks_per_ms
         ):
             return Objection(Refusal.TIME)
         return robot.checks.objection(
-            p0=core.queue.p,
-            v0=core.queue.v,
+            p0=control.queue.knot.p,
+            v0=control.queue.knot.v,
             p1=message.p,
             v1=message.v,
             ticks=message.duration,
-            homed=core.homed,
+            homed=control.homed,
         )
 
     def _keep(self, message: Keep) -> None:
-        self._core.lease.extend(message.seen, self._core.now)
+        self._control.lease.extend(message.seen, self._control.now)
 
     def _stop(self, message: Stop) -> None:
-        if self._core.moving or self.state is BoardState.ARMED:
-            self._core.halt(StopCause.HOST_STOP)
+        if self._control.moving or self.state is BoardState.ARMED:
+            self._control.halt(StopCause.HOST_STOP)
         else:
-            self._core.say_stopped()
+            self._control.say_stopped()
 
     def _estop(self, message: EStop) -> None:
-        self._core.drivers_off(Fault.NONE)
+        self._control.drivers_off(Fault.NONE)
 
     def _reset(self, message: Reset) -> None:
-        core = self._core
-        if core.estop_input:
+        control = self._control
+        if control.estop_input:
             self._reports.refuse(message, Refusal.INPUT)
         elif self._allowed(message, BoardEvent.RESET):
-            core.fault = Fault.NONE
-            core.homed = False
-            core.change(BoardEvent.RESET)
+            control.fault = Fault.NONE
+            control.homed = False
+            control.change(BoardEvent.RESET)
             self._reports.done(message)
 
     def _tool(self, message: Tool, robot: ConfiguredBoard) -> None:
@@ -312,7 +315,7 @@ class SimulatedBoard:
         elif not isfinite(message.servo_angle):
             self._reports.refuse(message, Refusal.CONFIGURATION)
         else:
-            self.tool = message
+            self._control.tool = message
             self._reports.done(message)
 
     def _allowed(self, message: HostMessage, event: BoardEvent) -> bool:

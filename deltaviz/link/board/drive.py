@@ -1,4 +1,7 @@
-"""The upper tier: takes the steppers along a path, piece by piece of 1 ms."""
+"""The upper tier: where the joints are to be, from boundary to boundary, along one path at a time.
+
+Ticks are the board's. What is planned is final: a path that is left is left where the plan ends.
+"""
 
 from __future__ import annotations
 
@@ -8,22 +11,26 @@ from deltaviz.link.board.brake import brake
 from deltaviz.link.board.parameters import Parameters
 from deltaviz.link.board.paths import Path
 from deltaviz.link.board.plant import Plant
-from deltaviz.link.board.stepper import Stepper, piece_ticks
+from deltaviz.link.board.stepper import Stepper
+from deltaviz.link.rules import since
 
 
 class Drive:
+    """`path` is what is followed where the plan ends; None: nothing moves there."""
+
     def __init__(self, parameters: Parameters, plant: Plant, *, ticks_per_ms: int) -> None:
         self._accelerations = parameters.accelerations
         self._ticks_per_ms = ticks_per_ms
-        self._stepper = Stepper(parameters.joints)
-        self._path: Path | None = None
-        self._piece_end = 0  # in ticks of the path
+        self._stepper = Stepper(parameters.joints, ticks_per_ms)
+        self._start = 0  # of the path
+        self.end = 0  # of the path
+        self.path: Path | None = None
+        self.planned: Sequence[int] = [0] * parameters.joints  # where the plan ends, Q32
         self.plant = plant
-        self.switches = plant.switches  # as last looked at
 
     @property
     def moving(self) -> bool:
-        return self._path is not None
+        return self.path is not None or not self._stepper.stands
 
     @property
     def positions(self) -> list[int]:
@@ -37,59 +44,52 @@ class Drive:
     def place(self, positions: Sequence[int]) -> None:
         """At rest: says what the position is. The arms do not move."""
         self._stepper.place(positions)
+        self.planned = positions
         self.plant.rebase(self._stepper.counts)
-
-    def follow(self, path: Path) -> None:
-        self._path = path
-        self._piece_end = 0
-        self._load(path)
-
-    def brake(self) -> None:
-        """From the middle of the path: leaves it along its tangent."""
-        if self._path is not None:
-            tick = self._piece_end - self._stepper.remaining
-            self.brake_from(self._path.velocities(tick))
-
-    def brake_from(self, velocities: Sequence[int]) -> None:
-        self.follow(
-            brake(
-                positions=self._stepper.positions,
-                velocities=velocities,
-                accelerations=self._accelerations,
-                ticks_per_ms=self._ticks_per_ms,
-            )
-        )
 
     def cut(self) -> None:
         """The drivers are off: no further step."""
-        self._path = None
-        self._stepper.place(self._stepper.positions)
+        positions = self._stepper.positions
         self.plant.step(self._stepper.counts)
+        self.path = None
+        self._stepper.place(positions)
+        self.planned = positions
 
-    def advance(self, ticks: int) -> int:
-        """Follows the path for `ticks`, or until it ends or a switch changes; the ticks passed.
+    def follow(self, path: Path, start: int) -> None:
+        """From tick `start` on: not before where the plan ends now."""
+        self.path = path
+        self._start = start
+        self.end = (start + path.ticks) & 0xFFFF_FFFF
 
-        The switches are looked at wherever a piece ends.
-        """
-        stepper, passed = self._stepper, 0
-        while self._path is not None and passed < ticks:
-            step = min(ticks - passed, stepper.remaining)
-            stepper.advance(step)
-            passed += step
-            if stepper.remaining:
-                break
-            self.plant.step(stepper.counts)
-            if self._piece_end < self._path.ticks:
-                self._load(self._path)
-            else:
-                self._path = None
-            switches = self.plant.switches
-            if switches != self.switches:
-                self.switches = switches
-                break
-        return passed
+    def brake(self, tick: int) -> None:
+        """Leaves the path along its tangent at `tick`, where the plan ends or the path does."""
+        if self.path is None:
+            return
+        at = since(tick, self._start)
+        path = brake(
+            positions=self.path.positions(at),
+            velocities=self.path.velocities(at),
+            accelerations=self._accelerations,
+            ticks_per_ms=self._ticks_per_ms,
+        )
+        self.follow(path, tick)
 
-    def _load(self, path: Path) -> None:
-        ticks = piece_ticks(path.ticks - self._piece_end, self._ticks_per_ms)
-        self._piece_end += ticks
-        self._stepper.load(path.positions(self._piece_end), ticks)
+    def rest(self) -> None:
+        """The path has ended, and it ended at rest."""
+        assert self.path is not None
+        self.planned = self.path.positions(self.path.ticks)
+        self.path = None
+
+    def advance(self, ticks: int) -> None:
+        self._stepper.advance(ticks)
+
+    def begin_piece(self) -> None:
+        if not self._stepper.stands:
+            self._stepper.begin_piece()
+            self.plant.step(self._stepper.counts)
+
+    def plan(self, tick: int) -> None:
+        """Until `tick`, one piece beyond the plan."""
+        if self.path is not None:
+            self.planned = self.path.positions(since(tick, self._start))
+        self._stepper.plan(self.planned)

@@ -47,7 +47,7 @@ class JointHoming:
         return self._phase is Phase.DONE
 
     def next_velocity(self, position: int, *, pressed: bool) -> int:
-        """The velocity to have 1 ms from now."""
+        """The velocity to have 1 ms after the plan's end."""
         if self._phase is None:
             self._enter(Phase.BACK if pressed else Phase.FAST, position)
         change = self._aim(position, pressed) - self.velocity
@@ -101,31 +101,38 @@ class Homing:
         self._joints = [JointHoming(parameters, joint) for joint in range(parameters.joints)]
 
     @property
-    def velocities(self) -> list[int]:
-        return [joint.velocity for joint in self._joints]
+    def done(self) -> bool:
+        """Every joint stands at its reference, or will where the plan ends."""
+        return all(joint.done for joint in self._joints)
 
     @property
     def fault(self) -> Fault:
         return next((joint.fault for joint in self._joints if joint.fault), Fault.NONE)
 
-    def next_path(self, positions: Sequence[int], switches: Sequence[bool]) -> Path | None:
-        """The next millisecond; None when every joint stands at its reference."""
-        before = self.velocities
+    def next_path(
+        self, positions: Sequence[int], switches: Sequence[bool], *, planned: Sequence[int]
+    ) -> Path:
+        """The millisecond after the plan, which ends at `planned`; `positions` are those at which
+        the switches were looked at.
+        """
+        before = self._velocities
         for joint, position, pressed in zip(self._joints, positions, switches, strict=True):
             if joint.done:
                 continue
             joint.next_velocity(position, pressed=pressed)
             if not self._parameters.homing_together:
                 break
-        if all(joint.done for joint in self._joints):
-            return None
         return Ramp(
-            start=positions,
+            start=planned,
             v_start=before,
-            v_end=self.velocities,
+            v_end=self._velocities,
             ticks=self._ticks_per_ms,
             ticks_per_ms=self._ticks_per_ms,
         )
+
+    @property
+    def _velocities(self) -> list[int]:
+        return [joint.velocity for joint in self._joints]
 
     def referenced(self, positions: Sequence[int]) -> list[int]:
         """What the positions are, now that the switches' angles are known; in whole microsteps."""

@@ -11,6 +11,7 @@ from deltaviz.link.messages import Configure, Options, RobotKind
 
 _TO_Q32 = 8  # from 2^-24
 _LEAST_ACCELERATION = 1 << 8  # 2^-24 microsteps per ms²: 2^16 in those of the brake
+_TWO_TICKS_A_STEP = 2004  # in 1/1000 ticks, with room for the slack of speeds
 _BRAKE_MS_MAX = 1000  # so that the brake's arithmetic fits 64 bits
 _HOMING_MICROSTEPS_MAX = 1 << 20
 _HOMING_MS_MAX = 600_000
@@ -87,7 +88,7 @@ def _speeds_make_sense(c: Configure, joint: int, tick_hz: int) -> bool:
     return (
         velocity > 0
         and c.unhomed_velocity[joint] > 0
-        and velocity * 2000 <= tick_hz << 16  # a step every other tick
+        and velocity * _TWO_TICKS_A_STEP <= tick_hz << 16
         and acceleration >= _LEAST_ACCELERATION
         and velocity << 8 <= acceleration * _BRAKE_MS_MAX
     )

@@ -16,9 +16,14 @@ class Path(Protocol):
     @property
     def ticks(self) -> int: ...
 
+    @property
+    def rests(self) -> bool:
+        """Whether it ends at rest."""
+        ...
+
     def positions(self, tick: int) -> list[int]: ...
 
-    def velocities(self, tick: int) -> list[int]: ...
+    def velocities(self, tick: int) -> Sequence[int]: ...
 
 
 class Cubic:
@@ -39,7 +44,9 @@ class Cubic:
     ) -> None:
         """Knots' positions are in 2^-10 microsteps, as in messages."""
         self.ticks = ticks
+        self.rests = not any(v_end)
         self._ticks_per_ms = ticks_per_ms
+        self._v_end = v_end
         self._joints = [
             (p0 << Q10_TO_Q32, p1 - p0, v0 * ticks // ticks_per_ms, v1 * ticks // ticks_per_ms)
             for p0, p1, v0, v1 in zip(start, end, v_start, v_end, strict=True)
@@ -54,7 +61,9 @@ class Cubic:
         g1 = u3 - u2
         return [p0 + ((d * h) >> 8) + ((m0 * g0 + m1 * g1) >> 14) for p0, d, m0, m1 in self._joints]
 
-    def velocities(self, tick: int) -> list[int]:
+    def velocities(self, tick: int) -> Sequence[int]:
+        if tick == self.ticks:
+            return self._v_end  # without the rounding of m
         u = (tick << 30) // self.ticks
         u2 = (u * u) >> 30
         h = 6 * (u - u2)
@@ -79,6 +88,7 @@ class Ramp:
         ticks_per_ms: int,
     ) -> None:
         self.ticks = ticks
+        self.rests = not any(v_end)
         self._ticks_per_ms = ticks_per_ms
         self._joints = list(zip(start, v_start, v_end, strict=True))
 

@@ -17,10 +17,7 @@ _POWER_UP = (0.20, -0.12, 0.08, -0.16)  # rad from the ready pose: where arms we
 
 
 class Plant:
-    """Arms by microsteps from the true zero angle.
-
-    `forced_switches` makes a switch read so whatever the arm does (a broken one).
-    """
+    """Arms by microsteps from the true zero angle; `switches`: which are pressed."""
 
     def __init__(self, parameters: Parameters, *, theta: Sequence[float]) -> None:
         """`theta` is the hidden pose of the arms (rad)."""
@@ -42,27 +39,34 @@ class Plant:
             )
         ]
         self._per_rad = per_rad
-        self._counts: Sequence[int] = [0] * parameters.joints
-        self.forced_switches: dict[int, bool] = {}
+        self._counts: Sequence[int] = (0,) * parameters.joints
+        self._forced: dict[int, bool] = {}
+        self.switches = self._read_switches()
 
     @property
     def theta(self) -> tuple[float, ...]:
         """The true angles of the arms, rad."""
         return tuple(arm / m for arm, m in zip(self._arms, self._per_rad, strict=True))
 
-    @property
-    def switches(self) -> list[bool]:
+    def force_switch(self, joint: int, pressed: bool) -> None:
+        """A broken switch: it reads so whatever the arm does."""
+        self._forced[joint] = pressed
+        self.switches = self._read_switches()
+
+    def _read_switches(self) -> list[bool]:
         pressed = [
             (arm - switch) * self._direction >= 0
             for arm, switch in zip(self._arms, self._switch, strict=True)
         ]
-        for joint, reads in self.forced_switches.items():
+        for joint, reads in self._forced.items():
             pressed[joint] = reads
         return pressed
 
     def step(self, counts: Sequence[int]) -> None:
         """The counter went to `counts`; an arm at its mechanical end stays, its steps are lost."""
         arms, before, low, high = self._arms, self._counts, self._low, self._high
+        if counts == before:
+            return
         for joint, count in enumerate(counts):
             arm = arms[joint] + count - before[joint]
             if arm < low[joint]:
@@ -71,6 +75,7 @@ class Plant:
                 arm = high[joint]
             arms[joint] = arm
         self._counts = counts
+        self.switches = self._read_switches()
 
     def rebase(self, counts: Sequence[int]) -> None:
         """The counter was set to `counts`, without a step."""

@@ -8,16 +8,31 @@ from dataclasses import dataclass
 from deltaviz.link.messages import Segment
 from deltaviz.link.rules import since
 
+MASK = 0xFFFF_FFFF
+
+
+@dataclass(frozen=True, slots=True)
+class Knot:
+    """Where segments meet, in units of the messages."""
+
+    p: tuple[int, ...]
+    v: tuple[int, ...]
+
+    @property
+    def rests(self) -> bool:
+        return not any(self.v)
+
 
 @dataclass(frozen=True, slots=True)
 class Entry:
     segment: Segment
+    origin: Knot
     start: int  # board tick
 
 
 class SegmentQueue:
-    """Knots of one epoch in order. `end` is the tick at which the last one is really reached,
-    `nominal_end` the host's own time for it, `knot` its position and velocity.
+    """Segments of one epoch in order. `end` is the tick at which the last one is really reached,
+    `nominal_end` the host's own time for it, `knot` where it leads.
     """
 
     def __init__(self, places: int) -> None:
@@ -26,8 +41,7 @@ class SegmentQueue:
         self.end = 0
         self.nominal_end = 0
         self.next_index = 0
-        self.p: tuple[int, ...] = ()
-        self.v: tuple[int, ...] = ()
+        self.knot = Knot((), ())
 
     def __len__(self) -> int:
         return len(self._entries)
@@ -40,24 +54,28 @@ class SegmentQueue:
     def head(self) -> Entry | None:
         return self._entries[0] if self._entries else None
 
-    def open(self, p: tuple[int, ...], t_start: int) -> None:
+    def open(self, p: tuple[int, ...], *, t_start: int, planned: int) -> None:
         """A new epoch at rest at `p`."""
         self._entries.clear()
+        self.end = planned
         self.nominal_end = t_start
         self.next_index = 0
-        self.p = p
-        self.v = (0,) * len(p)
+        self.knot = Knot(p, (0,) * len(p))
 
-    def push(self, segment: Segment, *, idle_at: int | None) -> None:
-        """`idle_at` is the present tick when nothing runs and nothing waits, else None."""
-        previous_end = self.end if idle_at is None else idle_at
-        wait = since(segment.t_end - segment.duration, previous_end) if not any(self.v) else 0
-        start = (previous_end + max(wait, 0)) & 0xFFFF_FFFF
-        self._entries.append(Entry(segment, start))
-        self.end = (start + segment.duration) & 0xFFFF_FFFF
+    def push(self, segment: Segment, *, planned: int, idle: bool) -> None:
+        """Nothing begins before `planned`, the tick until which motion is planned. `idle`: nothing
+        moves and nothing waits to, maybe since long ago.
+        """
+        start = self.end
+        if self.knot.rests:
+            earliest = planned if idle or since(planned, self.end) > 0 else self.end
+            wait = since(segment.t_end - segment.duration, earliest)
+            start = (earliest + max(wait, 0)) & MASK
+        self._entries.append(Entry(segment, self.knot, start))
+        self.end = (start + segment.duration) & MASK
         self.nominal_end = segment.t_end
         self.next_index = (segment.index + 1) & 0xFFFF
-        self.p, self.v = segment.p, segment.v
+        self.knot = Knot(segment.p, segment.v)
 
     def pop(self) -> Entry:
         return self._entries.popleft()

@@ -7,21 +7,20 @@ queue is never older than that, at 200 messages a second, a tenth of what 921600
 from __future__ import annotations
 
 from deltaviz.link.messages import BoardMessage, Done, HostMessage, Refusal, Refused, Segment
+from deltaviz.link.rules import TELEMETRY_MS
 
 
 class Reports:
-    def __init__(self, period: int) -> None:
-        self._period = period
+    """`pieces`: those until the next telemetry; `changed`: something that it tells at once."""
+
+    def __init__(self) -> None:
         self._said: list[BoardMessage] = []
-        self.ticks_to_telemetry = period
-        self.changed = False  # something that telemetry tells at once
+        self.pieces = TELEMETRY_MS
+        self.changed = False
 
     @property
     def telemetry_due(self) -> bool:
-        return self.changed or self.ticks_to_telemetry == 0
-
-    def pass_time(self, ticks: int) -> None:
-        self.ticks_to_telemetry -= ticks
+        return self.changed or self.pieces == 0
 
     def say(self, message: BoardMessage) -> None:
         self._said.append(message)
@@ -29,14 +28,15 @@ class Reports:
     def telemetry(self, message: BoardMessage) -> None:
         self._said.append(message)
         self.changed = False
-        if self.ticks_to_telemetry == 0:
-            self.ticks_to_telemetry = self._period
+        if self.pieces == 0:
+            self.pieces = TELEMETRY_MS
 
     def done(self, message: HostMessage) -> None:
         self._said.append(Done(_name(message)))
 
     def refuse(self, message: HostMessage, reason: Refusal, *, joint: int | None = None) -> None:
         index = message.index if isinstance(message, Segment) else None
+        index = None if index == 0xFFFF else index  # which the wire has no number for
         self._said.append(Refused(_name(message), reason, joint=joint, index=index))
 
     def take(self) -> list[BoardMessage]:

@@ -25,6 +25,9 @@ class BoardEvent(StrEnum):
     RESET = "reset"
 
 
+# The drivers are on.
+POWERED = frozenset(BoardState) - {BoardState.DISABLED, BoardState.ESTOP}
+
 TRANSITIONS: dict[tuple[BoardState, BoardEvent], BoardState] = {
     (BoardState.DISABLED, BoardEvent.ENABLE): BoardState.HALTED,
     (BoardState.DISABLED, BoardEvent.DISABLE): BoardState.DISABLED,

@@ -18,54 +18,48 @@ def nearest(position: int) -> int:
 
 
 class Stepper:
-    """Positions in Q32; `counts` are the whole numbers nearest to them."""
+    """The present piece and the next, of `piece` ticks each. Positions in Q32; where a piece ends,
+    the position is its target itself: what the division dropped does not add up.
+    """
 
-    def __init__(self, joints: int) -> None:
-        self._from = [0] * joints
-        self._to = [0] * joints
-        self._increments = [0] * joints
-        self._ticks = 0
+    def __init__(self, joints: int, piece: int) -> None:
+        self._piece = piece
+        self._start: Sequence[int] = [0] * joints
+        self._target = self._next = self._start
         self._elapsed = 0
-
-    @property
-    def remaining(self) -> int:
-        """Ticks until the target of the present piece; 0 at rest."""
-        return self._ticks - self._elapsed
 
     @property
     def positions(self) -> list[int]:
-        if self._elapsed == self._ticks:
-            return list(self._to)
-        return [p + i * self._elapsed for p, i in zip(self._from, self._increments, strict=True)]
+        piece, elapsed = self._piece, self._elapsed
+        return [
+            p + (t - p) // piece * elapsed
+            for p, t in zip(self._start, self._target, strict=True)
+        ]  # fmt: skip
 
     @property
     def counts(self) -> tuple[int, ...]:
-        positions = self._to if self._elapsed == self._ticks else self.positions
-        return tuple([nearest(position) for position in positions])
+        """The whole numbers nearest to the positions."""
+        positions = self.positions if self._elapsed else self._start
+        return tuple([(position + HALF) >> 32 for position in positions])
 
-    def place(self, positions: Sequence[int]) -> None:
-        """Says where it is, without a step."""
-        self._to = list(positions)
-        self._ticks = self._elapsed = 0
-
-    def load(self, targets: list[int], ticks: int) -> None:
-        """Heads for `targets`, to be there in `ticks`, from the position of this tick."""
-        start = self._to if self._elapsed == self._ticks else self.positions
-        self._from = start
-        self._to = targets
-        self._increments = [(t - p) // ticks for t, p in zip(targets, start, strict=True)]
-        self._ticks = ticks
-        self._elapsed = 0
+    @property
+    def stands(self) -> bool:
+        """In this piece and the next."""
+        return self._start == self._target == self._next
 
     def advance(self, ticks: int) -> None:
-        """`ticks` must not pass the end of the piece. There, the position is the target itself:
-        what the division dropped does not add up.
-        """
+        """Not beyond the end of the piece."""
         self._elapsed += ticks
 
+    def begin_piece(self) -> None:
+        """The next piece is the present one; the one behind it stands until it is planned."""
+        self._start, self._target = self._target, self._next
+        self._elapsed = 0
 
-def piece_ticks(remaining: int, ticks_per_ms: int) -> int:
-    """How long the next piece of a path is: 1 ms, and the last two shorter but never tiny."""
-    if remaining >= 2 * ticks_per_ms:
-        return ticks_per_ms
-    return remaining // 2 if remaining > ticks_per_ms else remaining
+    def plan(self, targets: Sequence[int]) -> None:
+        """The piece after the present one."""
+        self._next = targets
+
+    def place(self, positions: Sequence[int]) -> None:
+        """Says where it is, or stops it there; without a step."""
+        self._start = self._target = self._next = positions

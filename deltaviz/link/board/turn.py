@@ -15,6 +15,13 @@ from deltaviz.link.rules import (
     since16,
 )
 
+KNOT_COUNTS = 1 << 21  # beyond, a count is no i32 of 2^-10 microsteps
+HOMING_COUNTS = 1 << 30  # so far, the longest homing is within the integers of its arithmetic
+
+
+def within(counts: Sequence[int], most: int) -> bool:
+    return all(-most <= count < most for count in counts)
+
 
 def arm_refusal(
     arm: Arm,
@@ -27,9 +34,9 @@ def arm_refusal(
 ) -> Refusal | None:
     if not idle:
         return Refusal.MOVING
-    if not 0 <= arm.epoch <= 0xFFFF or since16(arm.epoch, last_epoch) <= 0:
+    if since16(arm.epoch, last_epoch) <= 0:
         return Refusal.EPOCH
-    if tuple(arm.counts) != tuple(counts):
+    if tuple(arm.counts) != tuple(counts) or not within(counts, KNOT_COUNTS):
         return Refusal.COUNTS
     if not _near(arm.t_start, now, ticks_per_ms):
         return Refusal.TIME
@@ -51,15 +58,6 @@ def segment_refusal(
     return None
 
 
-def well_formed(segment: Segment, *, joints: int) -> bool:
-    """One number per joint, all of them within the fields they have on the wire."""
-    return (
-        len(segment.p) == len(segment.v) == joints
-        and all(-0x8000_0000 <= value < 0x8000_0000 for value in (*segment.p, *segment.v))
-        and all(0 <= tick <= 0xFFFF_FFFF for tick in (segment.t_end, segment.seen))
-    )
-
-
 def well_timed(
     segment: Segment, *, idle_at: int | None, queue: SegmentQueue, ticks_per_ms: int
 ) -> bool:
@@ -69,7 +67,7 @@ def well_timed(
     start = segment.t_end - segment.duration
     if idle_at is not None:
         return _near(start, idle_at, ticks_per_ms)
-    if any(queue.v):
+    if not queue.knot.rests:
         return since(start, queue.nominal_end) == 0
     return (
         since(start, queue.nominal_end) >= 0 and since(start, queue.end) <= AHEAD_MS * ticks_per_ms

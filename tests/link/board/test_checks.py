@@ -36,6 +36,7 @@ def test_accelerations_are_judged_at_both_ends(bench):
     bench.arm()
     # a0 = 6 p / h², a1 = -a0, from rest to rest in 10 ms
     assert reasons(bench.segment([0.83, 100], [0, 0])) == []
+    bench.run(5)
     assert reasons(bench.segment([0.83, 100.85], [0, 0])) == [(Refusal.ACCELERATION, 1)]
     assert bench.board.state is BoardState.BRAKING
 
@@ -102,7 +103,7 @@ def test_without_the_brakeability_check_the_limit_is_broken(
 
 
 def test_outside_its_limits_it_accepts_only_the_way_in(bench):
-    checks = bench.board._core.robot.checks
+    checks = bench.board._control.robot.checks
 
     def judge(p0, p1):
         return checks.objection(
@@ -232,7 +233,7 @@ def test_without_its_own_workspace_check_it_would_leave(delta, monkeypatch):
     assert fall(bench, robot)[2] < robot.workspace.z[0] - 1
 
 
-BOARD_TICKS = 200  # per millisecond
+TOP_VELOCITY = 200 * 1000 * 65536 // 2004  # a step in 2.004 ticks; 200 are a millisecond
 
 
 @pytest.mark.parametrize(
@@ -240,7 +241,7 @@ BOARD_TICKS = 200  # per millisecond
     [
         ("joint_min", 100 * 1024, 100 * 1024 + 1),  # the ready pose of joint 1
         ("joint_max", 100 * 1024, 100 * 1024 - 1),
-        ("velocity", BOARD_TICKS * 65536 // 2, BOARD_TICKS * 65536 // 2 + 1),  # a step in two ticks
+        ("velocity", TOP_VELOCITY, TOP_VELOCITY + 1),
         ("velocity", 131_072, 131_071),  # as fast as homing is
         ("acceleration", 67_109, 67_108),  # a brake of a second
         ("unhomed_velocity", 1, 0),

@@ -131,8 +131,8 @@ class Chaos:
         joints = rng.randint(0, 3)
         wrong = Segment(
             bench.epoch, bench.index, rng.getrandbits(32), rng.getrandbits(14),
-            rng.getrandbits(32), tuple(rng.randint(-2**40, 2**40) for _ in range(joints)),
-            tuple(rng.randint(-2**40, 2**40) for _ in range(joints)),
+            rng.getrandbits(32), tuple(rng.randint(-2**31, 2**31 - 1) for _ in range(joints)),
+            tuple(rng.randint(-2**31, 2**31 - 1) for _ in range(joints)),
         )  # fmt: skip
         bench.send(
             rng.choice(

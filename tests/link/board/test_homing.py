@@ -97,7 +97,7 @@ def test_it_starts_on_a_pressed_switch_too(make_bench, where):
 
 def test_a_switch_that_never_comes_is_a_fault(make_bench, accelerations):
     bench = make_bench(homed=False)
-    bench.board.plant.forced_switches[1] = False
+    bench.board.plant.force_switch(1, False)
     home(bench)
     assert bench.board.state is BoardState.FAULT
     assert bench.board.fault is Fault.HOMING_NO_SWITCH
@@ -107,7 +107,7 @@ def test_a_switch_that_never_comes_is_a_fault(make_bench, accelerations):
 
 def test_a_switch_that_is_stuck_is_a_fault(make_bench):
     bench = make_bench(homed=False)
-    bench.board.plant.forced_switches[0] = True
+    bench.board.plant.force_switch(0, True)
     home(bench)
     assert bench.board.state is BoardState.FAULT
     assert bench.board.fault is Fault.HOMING_SWITCH_STUCK
@@ -117,7 +117,7 @@ def test_a_switch_that_is_stuck_is_a_fault(make_bench):
 
 def test_a_stuck_switch_moves_the_arm_no_further_than_twice_the_back_off(make_bench):
     bench = make_bench(homed=False, theta=(0.5, 0.5))
-    bench.board.plant.forced_switches[0] = True
+    bench.board.plant.force_switch(0, True)
     home(bench)
     assert abs(bench.board.plant.theta[0] - 0.5) < 2 * 0.05 + 0.05
 

@@ -10,11 +10,11 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from deltaviz.link.board import SimulatedBoard
 from deltaviz.link.board.brake import brake
 from deltaviz.link.board.paths import Cubic
-from deltaviz.link.board.stepper import Stepper, piece_ticks
-from deltaviz.link.messages import Arm, BoardState, Segment
+from deltaviz.link.board.stepper import Stepper
+from deltaviz.link.messages import BoardState
+from tests.link.board.bench import Bench
 
 Q32 = 2**32
 EXACT = settings(deadline=None, derandomize=True)
@@ -75,40 +75,31 @@ def test_a_cubics_velocity_is_its_slope(knot, share):
 @EXACT
 @given(
     st.integers(-(2**40), 2**40),
-    st.integers(-(2**38), 2**38),
-    st.integers(100, 200),
-    st.lists(st.integers(1, 60), max_size=20),
+    st.lists(st.integers(-(2**38), 2**38), min_size=1, max_size=4),
+    st.lists(st.integers(1, 60), max_size=6),
 )
-def test_a_piece_is_the_same_however_time_is_cut(start, change, ticks, cuts):
+def test_pieces_are_the_same_however_time_is_cut(start, changes, cuts):
     """Against a counter that adds its increment tick by tick, as the real board does."""
-    stepper = Stepper(1)
+    stepper, position = Stepper(1, 200), start
     stepper.place([start])
-    stepper.load([start + change], ticks)
-    increment, position, passed = change // ticks, start, 0
-    for cut in cuts:
-        cut = min(cut, ticks - passed)
-        if not cut:
-            break
-        stepper.advance(cut)
-        for _ in range(cut):
-            position += increment
-        passed += cut
-        if passed < ticks:
+    for change in changes:
+        target = start + change
+        stepper.plan([target])
+        stepper.advance(200)
+        assert stepper.positions == [start]
+        stepper.begin_piece()
+        passed, cut = 0, iter([*cuts, 199, 199])
+        while (step := min(next(cut), 199 - passed)) > 0:
+            stepper.advance(step)
+            position += change // 200 * step
+            passed += step
+            assert stepper.positions == [position]
             assert stepper.counts == ((2 * position + 2**32) // 2**33,)
-    stepper.advance(stepper.remaining)
-    assert stepper.positions == [start + change]
-
-
-@EXACT
-@given(st.integers(800, 400_000))
-def test_pieces_fill_a_path_and_are_never_tiny(ticks):
-    pieces = []
-    while ticks:
-        pieces.append(piece_ticks(ticks, 200))
-        ticks -= pieces[-1]
-        assert ticks >= 0
-    assert max(pieces) == 200
-    assert min(pieces) >= 100
+        stepper.advance(200 - passed)
+        stepper.plan([target])
+        stepper.begin_piece()
+        position = start = target
+        assert stepper.positions == [target]
 
 
 @EXACT
@@ -150,25 +141,25 @@ def wander(rng: random.Random, counts, segments):
 @pytest.mark.parametrize("joints", [2, 3, 4])
 @settings(EXACT, max_examples=15, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(seed=st.integers(0, 2**32 - 1))
-def test_every_millisecond_the_count_is_the_cubics_integer_part(make_configure, joints, seed):
+def test_every_millisecond_its_count_is_the_cubics(make_board, make_configure, joints, seed):
     rng = random.Random(seed)
-    board = SimulatedBoard(start_homed=True, now=2**32 - 5000)
-    board.receive(make_configure(joints, joint_min=(-3.0,) * joints, joint_max=(3.0,) * joints))
-    board.receive(Arm(1, board.now, board.counts))
+    room = {"joint_min": (-3.0,) * joints, "joint_max": (3.0,) * joints}
+    bench = Bench(make_configure(joints, **room), make_board=make_board, now=2**32 - 5000)
+    board = bench.board
+    bench.arm()
     knots = wander(rng, board.counts, 8)
-    start = t_end = board.now
     last = tuple(count << 10 for count in board.counts), (0,) * joints
-    for index, (p, v, ms) in enumerate(knots):
-        t_end = (t_end + ms * 200) & 0xFFFF_FFFF
-        board.receive(Segment(1, index, t_end, ms * 200, start, p, v))
+    for p, v, ms in knots:
+        bench.segment([x / 1024 for x in p], [x / 65.536 for x in v], ms=ms)
     assert board.state is BoardState.ARMED
+    bench.advance(2 * 200)  # is planned already
     for p1, v1, ms in knots:
         p0, v0 = last
         for passed in range(1, ms + 1):
             before = board.counts
             part = rng.randint(1, 199)
-            board.advance(part)
-            board.advance(200 - part)
+            bench.advance(part)
+            bench.advance(200 - part)
             for joint in range(joints):
                 here = exact(p0[joint], p1[joint], v0[joint], v1[joint], ms * 200, passed * 200)
                 assert board.counts[joint] in (floor(here - NEAR + 0.5), floor(here + NEAR + 0.5))

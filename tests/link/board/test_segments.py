@@ -17,6 +17,7 @@ from deltaviz.link.messages import (
 from deltaviz.link.rules import QUEUE_PLACES, since
 
 MS = 200
+ACCELERATION = 50_000.0
 MASK = 0xFFFF_FFFF
 
 
@@ -29,16 +30,34 @@ def hold(bench, **changes):
     return bench.segment(bench.board.counts, [0.0] * len(bench.board.counts), **changes)
 
 
-def test_from_rest_it_starts_at_once(bench):
+PLANNED = 2 * MS  # where a piece begins, two are planned
+
+
+def first_motion(bench, ticks):
+    """The ticks, out of so many, after which the board has begun to move; None: it has not."""
+    here = bench.board.positions
+    for tick in range(ticks):
+        bench.advance(1)
+        if bench.board.positions != here:
+            return tick + 1
+    return None
+
+
+@pytest.mark.parametrize("into_a_piece", [0, 1, 120, MS - 1])
+def test_from_rest_it_starts_where_the_plan_ends(bench, into_a_piece):
+    """One to two milliseconds later."""
     bench.arm()
+    bench.advance(into_a_piece)
+    bench.t_end = bench.now
     bench.segment([2.4, 100], [480, 0])
-    assert bench.board.moving
+    assert first_motion(bench, PLANNED + MS) == PLANNED - into_a_piece + 1
 
 
 def test_it_arrives_at_the_tick_it_said(bench):
     bench.arm()
-    bench.segment([2.25, 100], [0, 0], ms=20)
-    bench.advance(20 * MS - 1)
+    bench.segment([2.25, 100], [0, 0], ms=20, t_end=(bench.now + 25 * MS) & MASK)
+    bench.advance(25 * MS - 1)
+    assert bench.board.positions[0] < round(2.25 * 2**32)
     assert bench.board.moving
     bench.advance(1)
     assert not bench.board.moving
@@ -46,13 +65,17 @@ def test_it_arrives_at_the_tick_it_said(bench):
     assert bench.board.counts == (2, 100)
 
 
-def test_a_start_in_the_future_is_waited_for(bench):
+@pytest.mark.parametrize("ticks", [50 * MS, 50 * MS + 77])
+def test_a_start_in_the_future_is_waited_for(bench, ticks):
+    """Between two boundaries, too: then the piece in which it lies begins to move."""
     bench.arm()
-    bench.segment([2, 100], [0, 0], ms=20, t_end=(bench.now + 70 * MS) & MASK)
-    bench.advance(50 * MS - 1)
-    assert not bench.board.moving
-    bench.advance(1)
-    assert bench.board.moving
+    bench.segment([2, 100], [0, 0], ms=20, t_end=(bench.now + ticks + 20 * MS) & MASK)
+    bench.advance(50 * MS)
+    assert first_motion(bench, MS) == 1
+    bench.advance(20 * MS - 1)
+    assert (bench.board.positions[0] == 2 << 32) == (ticks % MS == 0)
+    bench.advance(MS)
+    assert bench.board.positions[0] == 2 << 32
 
 
 def test_what_comes_late_runs_late_and_what_follows_too(bench):
@@ -60,7 +83,7 @@ def test_what_comes_late_runs_late_and_what_follows_too(bench):
     bench.advance(7 * MS)
     bench.segment([1, 100], [200, 0])
     bench.segment([2, 100], [0, 0])
-    bench.advance(20 * MS - 1)
+    bench.advance(PLANNED + 20 * MS - 1)
     assert bench.board.moving
     bench.advance(1)
     assert not bench.board.moving
@@ -88,6 +111,7 @@ def test_a_pause_may_follow_a_knot_at_rest_that_still_runs(bench):
     bench.advance(4 * MS)
     assert bench.board.moving
     bench.advance(19 * MS)
+    assert not bench.board.moving
     assert bench.board.counts == (4, 100)
 
 
@@ -105,7 +129,7 @@ def test_no_gap_and_no_overlap_after_a_knot_that_moves(bench, shift, accepted):
 )
 def test_a_pause_after_a_knot_at_rest_is_at_most_100_ms(bench, shift, accepted):
     bench.arm()
-    bench.segment([2, 100], [0, 0], ms=20)
+    bench.segment([2, 100], [0, 0], ms=20, t_end=(bench.now + PLANNED + 20 * MS) & MASK)
     bench.t_end = (bench.t_end + shift) & MASK
     assert refusals(bench.segment([4, 100], [0, 0], ms=20)) == ([] if accepted else [Refusal.TIME])
 
@@ -142,43 +166,59 @@ def test_out_of_turn_is_passed_over(bench, index):
 
 def test_a_full_queue_takes_no_more_and_loses_nothing(bench):
     bench.arm()
-    for _ in range(QUEUE_PLACES + 1):  # one runs, the others wait
+    for _ in range(QUEUE_PLACES):
         assert refusals(hold(bench)) == []
     assert refusals(hold(bench)) == [Refusal.QUEUE_FULL]
     bench.index -= 1
     bench.t_end = (bench.t_end - 10 * MS) & MASK
-    bench.run(10)
+    bench.run(1)  # the first is taken up
     assert refusals(hold(bench)) == []
 
 
-def test_a_queue_that_ends_in_motion_brakes_at_that_very_tick(bench):
+# Where a knot lies (ticks after the segment was sent), and when control plans what follows it.
+KNOTS = [
+    (15 * MS, 14 * MS),
+    (15 * MS + 1, 14 * MS),
+    (15 * MS - 1, 13 * MS),
+    (15 * MS + 77, 14 * MS),
+]
+
+
+@pytest.mark.parametrize(("knot", "looks"), KNOTS)
+def test_a_queue_that_ends_in_motion_brakes_from_that_very_knot(bench, knot, looks):
+    """Noticed one to two milliseconds before, when the piece in which it lies is planned."""
     bench.arm()
-    bench.segment([2.4, 100], [480, 0])
-    bench.advance(10 * MS - 1)
+    bench.segment([2.4, 100], [480, 0], t_end=(bench.now + knot) & MASK)
+    bench.advance(looks - 1)
     assert bench.board.state is BoardState.ARMED
     bench.advance(1)
     assert bench.board.state is BoardState.BRAKING
+    bench.advance(knot - looks)
+    assert bench.board.positions[0] / 2**32 == pytest.approx(2.4, abs=0.01)
     bench.run_to_rest()
+    time = 480 / ACCELERATION
+    assert bench.board.positions[0] / 2**32 == pytest.approx(2.4 + 480 * time / 2, abs=0.01)
     assert bench.board.state is BoardState.HALTED
     assert bench.last(Stopped).cause is StopCause.UNDERRUN
     assert bench.last(Stopped).counts == bench.board.counts
 
 
-def test_the_next_segment_one_tick_before_the_end_is_in_time(bench):
+@pytest.mark.parametrize(("knot", "looks"), KNOTS)
+def test_the_next_segment_one_tick_before_that_is_in_time(bench, knot, looks):
     bench.arm()
-    bench.segment([2.4, 100], [480, 0])
-    bench.advance(10 * MS - 1)
+    bench.segment([2.4, 100], [480, 0], t_end=(bench.now + knot) & MASK)
+    bench.advance(looks - 1)
     bench.segment([4.8, 100], [0, 0])
-    bench.run(20)
+    bench.run(25)
     assert bench.board.state is BoardState.ARMED
     assert bench.board.counts == (5, 100)  # the nearest to 4.8
 
 
 def test_indices_wrap():
     queue = SegmentQueue(places=4)
-    queue.open((0,), 0)
+    queue.open((0,), t_start=0, planned=0)
     queue.next_index = 65535
-    queue.push(Segment(1, 65535, 2000, 2000, 0, (0,), (0,)), idle_at=0)
+    queue.push(Segment(1, 65535, 2000, 2000, 0, (0,), (0,)), planned=0, idle=True)
     assert queue.next_index == 0
 
 
@@ -190,7 +230,7 @@ def test_telemetry_tells_what_was_taken_and_when_the_queue_ends(bench):
     bench.advance(5 * MS)
     told = bench.last(Telemetry)
     assert (told.epoch, told.last_index, told.free) == (bench.epoch, 2, QUEUE_PLACES - 2)
-    assert since(told.t_queue_end, start) == 30 * MS
+    assert since(told.t_queue_end, start) == PLANNED + 30 * MS
     bench.run(40)
     told = bench.last(Telemetry)
     assert told.t_queue_end == told.now

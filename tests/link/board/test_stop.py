@@ -23,6 +23,7 @@ from deltaviz.link.messages import (
     StopCause,
     Stopped,
     Telemetry,
+    Tool,
 )
 
 ACCELERATION = 50_000.0
@@ -77,14 +78,14 @@ def fault(make):
     bench = make()
     bench.speed_up(500)
     bench.run(5)
-    bench.board.plant.forced_switches[0] = True
+    bench.board.plant.force_switch(0, True)
     bench.run_to_rest()
     return bench
 
 
 def unconfigured(make):
     bench = make()
-    bench.board = type(bench.board)()
+    bench.switch_off_and_on()
     return bench
 
 
@@ -216,14 +217,24 @@ def test_after_an_estop_only_reset_helps_and_homing_is_lost(make_bench):
 
 
 def test_the_estop_input_acts_and_holds(make_bench):
+    """At the next boundary; the count is where it was cut."""
     bench = moving(make_bench)
+    bench.advance(30)
     bench.board.press_estop(True)
-    bench.advance(0)
+    bench.advance(169)
+    assert bench.board.state is BoardState.ARMED
+    bench.advance(1)
     assert bench.board.state is BoardState.ESTOP
+    counts = bench.board.counts
+    bench.advance(400)
+    assert bench.board.counts == counts
     assert bench.board.fault is Fault.ESTOP_INPUT
     assert Inputs.ESTOP in bench.last(Telemetry).inputs
     assert Refused("reset", Refusal.INPUT) in bench.send(Reset())
     bench.board.press_estop(False)
+    bench.run(1)
+    assert Inputs.ESTOP not in bench.last(Telemetry).inputs
+    assert bench.board.state is BoardState.ESTOP
     bench.send(Reset())
     assert bench.board.state is BoardState.DISABLED
     assert bench.board.fault is Fault.NONE
@@ -232,13 +243,14 @@ def test_the_estop_input_acts_and_holds(make_bench):
 def test_it_cannot_be_enabled_while_the_estop_input_is_active(make_bench):
     bench = disabled(make_bench)
     bench.board.press_estop(True)
+    bench.run(1)
     bench.send(Reset())
     assert Refused("enable", Refusal.INPUT) in bench.send(Enable(on=True))
 
 
 def test_a_limit_switch_in_motion_brakes_into_fault(make_bench, accelerations):
     bench = moving(make_bench)
-    bench.board.plant.forced_switches[1] = True
+    bench.board.plant.force_switch(1, True)
     bench.run(1)
     assert bench.board.state is BoardState.BRAKING
     bench.run_to_rest()
@@ -269,6 +281,29 @@ def test_another_version_may_only_stop(make_bench):
     assert any(isinstance(m, Stopped) for m in bench.send(Stop()))
     bench.send(Hello(1))
     assert Done("arm") in bench.arm()
+
+
+def drivers_off(bench):
+    bench.send(Enable(on=False))
+
+
+def press_estop(bench):
+    bench.board.press_estop(True)
+    bench.run(1)
+
+
+@pytest.mark.parametrize("ends", [drivers_off, press_estop, lambda bench: bench.send(EStop())])
+def test_the_tool_goes_off_with_the_drivers(bench, ends):
+    assert Done("tool") in bench.send(Tool(on=True, servo_angle=0.5))
+    bench.send(Stop())
+    assert bench.board.tool == Tool(on=True, servo_angle=0.5)
+    ends(bench)
+    assert bench.board.tool == Tool(on=False, servo_angle=0.5)
+    assert Refused("tool", Refusal.STATE) in bench.send(Tool(on=True, servo_angle=0.0))
+
+
+def test_a_tool_at_no_angle_is_refused(bench):
+    assert Refused("tool", Refusal.CONFIGURATION) in bench.send(Tool(True, float("nan")))
 
 
 def test_the_table_reaches_every_state_and_always_knows_an_estop():
