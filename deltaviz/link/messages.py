@@ -58,6 +58,7 @@ class Fault(IntEnum):
     HOMING_SWITCH_STUCK = 3
     ESTOP_INPUT = 4
     CONFIGURATION = 5
+    LATE = 6  # the board did not plan in time: a piece began that was not planned
 
 
 class Refusal(IntEnum):

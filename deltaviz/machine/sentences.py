@@ -39,6 +39,10 @@ FAULT: Final[Mapping[Fault, str]] = {
     ),
     Fault.ESTOP_INPUT: "The hardware emergency stop is pressed. Release it, then reset.",
     Fault.CONFIGURATION: "The board cannot work with this robot's configuration.",
+    Fault.LATE: (
+        "The board did not keep up with the motion, so it switched the drivers off. Reset, then "
+        "home. If it happens again, its firmware does not fit its processor."
+    ),
 }
 
 REFUSED_BECAUSE: Final[Mapping[Refusal, str]] = {

@@ -10,20 +10,29 @@
 #ifndef DV_BOARD_H
 #define DV_BOARD_H
 
+#include "control.h"
+#include "endpoint.h"
 #include "hal.h"
 #include "messages.h"
+#include "reports.h"
 #include "stepper.h"
 
-#define DV_OUTBOX_FRAME_MAX 96 /* bytes of the longest frame that a board sends */
+#include <stdbool.h>
+#include <stdint.h>
 
 struct dv_board {
     const struct dv_hal *hal;
     struct dv_stepper stepper;
-    /* The rest is the core's own. */
+    struct dv_endpoint endpoint;
+    struct dv_reports reports;
+    struct dv_control control;
+    bool speaks;     /* the host's version */
+    uint32_t pieces; /* that control has seen begin */
+    uint32_t fed;    /* at which of them the watchdog was fed */
 };
 
-/* As at power-up: disabled, unhomed, not configured. `hal` has to outlive the board. */
-void dv_board_init(struct dv_board *board, const struct dv_hal *hal);
+/* As at power-up, at tick `now`: disabled, unhomed, not configured. `hal` has to outlive the board. */
+void dv_board_init(struct dv_board *board, const struct dv_hal *hal, uint32_t now);
 
 void dv_board_piece(struct dv_board *board);
 

@@ -145,11 +145,6 @@ struct dv_objection dv_check_segment(const struct dv_parameters *parameters, uin
                                      const int32_t *p0, const int32_t *v0,
                                      const struct dv_segment *segment, bool homed)
 {
-    uint64_t milliticks = (uint64_t)segment->duration * 1000;
-    if (milliticks < (uint64_t)tick_hz * DV_SEGMENT_MIN_MS
-        || milliticks > (uint64_t)tick_hz * DV_SEGMENT_MAX_MS) {
-        return objection(DV_REFUSAL_TIME, -1);
-    }
     struct motion motion = {.parameters = parameters, .start = p0, .end = segment->p};
     for (int joint = 0; joint < parameters->configure.joints; joint++) {
         motion.cubic[joint] = dv_joint_cubic(p0[joint], segment->p[joint], v0[joint],

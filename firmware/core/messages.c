@@ -92,6 +92,7 @@ static bool is_fault(uint8_t value)
     case DV_FAULT_HOMING_SWITCH_STUCK:
     case DV_FAULT_ESTOP_INPUT:
     case DV_FAULT_CONFIGURATION:
+    case DV_FAULT_LATE:
         return true;
     default:
         return false;

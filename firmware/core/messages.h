@@ -63,6 +63,7 @@ enum dv_fault {
     DV_FAULT_HOMING_SWITCH_STUCK = 3,
     DV_FAULT_ESTOP_INPUT = 4,
     DV_FAULT_CONFIGURATION = 5,
+    DV_FAULT_LATE = 6,
 };
 
 enum dv_refusal {

@@ -19,7 +19,7 @@ CORE = Path(__file__).parents[2] / "firmware" / "core"
 SOURCES = [CORE / f"{name}.c" for name in ("kinematics", "parameters", "joint_cubic", "checks")]
 STRICT_C = [
     *("-std=c11", "-Wall", "-Wextra", "-pedantic", "-Wconversion", "-Wdouble-promotion"),
-    *("-Wshadow", "-Werror", f"-I{CORE}"),
+    *("-Wshadow", "-Werror", f"-I{CORE}", f"-I{CORE.parent / 'hal'}"),
 ]
 
 _C_TYPES: dict[str, Any] = {

@@ -3,6 +3,7 @@
  */
 #include "checks.h"
 #include "kinematics.h"
+#include "rules.h"
 
 #include <stdio.h>
 
@@ -27,9 +28,12 @@ int main(void)
             continue;
         }
         taken++;
+        uint64_t milliticks = (uint64_t)now.segment.duration * 1000;
+        bool lasts = milliticks >= (uint64_t)now.tick_hz * DV_SEGMENT_MIN_MS
+            && milliticks <= (uint64_t)now.tick_hz * DV_SEGMENT_MAX_MS;
         dv_forward(&parameters, now.pose, result);
         dv_inverse(&parameters, now.pose, result);
-        for (int homed = 0; homed < 2; homed++) {
+        for (int homed = 0; homed < 2 && lasts; homed++) {
             struct dv_objection found = dv_check_segment(&parameters, now.tick_hz, now.p0, now.v0,
                                                          &now.segment, homed == 1);
             accepted += found.reason == 0;

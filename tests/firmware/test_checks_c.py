@@ -109,13 +109,6 @@ def test_workspace_and_the_brake_inside_it():
     assert down(low - 20, 1000) == (0, -1)
 
 
-def test_durations():
-    both = gantry()
-    for ticks, answer in ((799, Refusal.TIME), (800, 0), (10_000, 0), (10_001, Refusal.TIME)):
-        knots = Knots((0, 0), (0, 0), (0, 0), (0, 0), ticks)
-        assert both.c_answer(knots) == (answer, -1)
-
-
 # The same, in bulk.
 
 

@@ -117,7 +117,7 @@ def test_what_makes_no_sense_is_refused_by_both(changed):
     assert c_library.parameters_from(configure, tick_hz=TICK_HZ) is None
 
 
-@pytest.mark.parametrize("tick_hz", [0, 999, 1_000_001, (1 << 32) - 1])
+@pytest.mark.parametrize("tick_hz", [0, 999, 200_001, 501_000, (1 << 32) - 1])
 def test_a_tick_that_is_out_of_bounds(tick_hz):
     assert c_library.parameters_from(STM32, tick_hz=tick_hz) is None
 
@@ -150,7 +150,7 @@ def wild(chance: random.Random) -> c_library.CCase:
             old[chance.randrange(len(old))] = value if real else whole
         else:
             setattr(case.configure, name, value if isinstance(old, float) else whole)
-    case.tick_hz = chance.choice([200_000, 40_000, 1000, 1_000_000, chance.getrandbits(32)])
+    case.tick_hz = chance.choice([200_000, 40_000, 1000, 500_000, chance.getrandbits(32)])
     still = Segment(1, 0, 0, chance.choice([160, 800, 10_000, chance.getrandbits(32)]), 0, (), ())
     case.segment = c_library.c_message(c_library.CSegment, still, joints)
     size = chance.choice([1 << 10, 1 << 20, (1 << 31) - 1])

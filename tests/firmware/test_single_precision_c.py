@@ -6,10 +6,11 @@ import re
 import subprocess
 from pathlib import Path
 
-from tests.firmware.c_library import SOURCES, STRICT_C
+from tests.firmware.c_library import CORE, STRICT_C
 
 CORTEX_M4F = ["-mthumb", "-mcpu=cortex-m4", "-mfpu=fpv4-sp-d16", "-mfloat-abi=hard"]
-USED = ["dv_parameters_from", "dv_forward", "dv_inverse", "dv_check_segment"]
+SOURCES = sorted(CORE.glob("*.c"))
+USED = ["dv_board_init", "dv_board_piece", "dv_board_poll", "dv_stepper_tick", "dv_inverse"]
 
 
 def run(*command: str) -> str:
@@ -21,7 +22,7 @@ def run(*command: str) -> str:
 def linked(target: Path, *sources: Path) -> set[str]:
     """The names in a program of these sources and all that they need of the libraries."""
     needed = [f"-Wl,-u,{name}" for name in USED]
-    options = ["-O2", "-nostartfiles", "-Wl,-e,dv_check_segment", "-specs=nosys.specs", *needed]
+    options = ["-O2", "-nostartfiles", "-Wl,-e,dv_board_poll", "-specs=nosys.specs", *needed]
     files = [*map(str, sources), "-lm", "-lc", "-o", str(target)]
     run("arm-none-eabi-gcc", *STRICT_C, *CORTEX_M4F, *options, *files)
     return {line.split()[-1] for line in run("arm-none-eabi-nm", str(target)).splitlines()}

@@ -6,6 +6,8 @@ from collections.abc import Callable, Sequence
 from math import inf
 from typing import Any, Protocol, TypeVar
 
+import pytest
+
 from deltaviz.link.board import SimulatedBoard
 from deltaviz.link.board.plant import Plant
 from deltaviz.link.board.port import BoardPort
@@ -79,6 +81,9 @@ class PythonBoard:
 
 
 MakeBoard = Callable[..., Any]
+
+# For tests that reach into the simulated board.
+simulated_only = pytest.mark.parametrize("make_board", [PythonBoard])
 
 
 class Host:

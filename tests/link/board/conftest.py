@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from deltaviz.link.messages import Configure
+from tests.firmware.c_board import CBoard
 from tests.link.board.bench import Bench, MakeBoard, PythonBoard, gantry, top_acceleration
 
 
@@ -17,9 +18,9 @@ def tick(request: pytest.FixtureRequest) -> int:
     return int(request.param)
 
 
-@pytest.fixture
-def make_board() -> MakeBoard:
-    return PythonBoard
+@pytest.fixture(params=[PythonBoard, CBoard], ids=["simulated", "firmware"])
+def make_board(request: pytest.FixtureRequest) -> MakeBoard:
+    return request.param
 
 
 @pytest.fixture

@@ -10,7 +10,7 @@ import pytest
 
 from deltaviz import load_robot
 from deltaviz.link.board import SimulatedBoard
-from deltaviz.link.board.checks import Checks
+from deltaviz.link.board.checks import Checks, Objection
 from deltaviz.link.board.kinematics import RotaryDeltaForward
 from deltaviz.link.board.parameters import parameters_from
 from deltaviz.link.configuration import configure_from
@@ -23,6 +23,7 @@ from deltaviz.link.messages import (
     StopCause,
     Stopped,
 )
+from tests.link.board.bench import simulated_only
 
 PRESETS = ["stm32", "trossen", "zheng2023", "deltadraw"]
 ACCELERATION = 50_000.0
@@ -91,6 +92,7 @@ def test_every_knot_must_be_brakeable(make_bench, make_configure):
     assert bench.last(Stopped).cause is StopCause.BAD_SEGMENT
 
 
+@simulated_only
 def test_without_the_brakeability_check_the_limit_is_broken(
     make_bench, make_configure, monkeypatch
 ):
@@ -102,8 +104,10 @@ def test_without_the_brakeability_check_the_limit_is_broken(
     assert bench.board.counts[0] > 101
 
 
-def test_outside_its_limits_it_accepts_only_the_way_in(bench):
-    checks = bench.board._control.robot.checks
+def test_outside_its_limits_it_accepts_only_the_way_in(make_configure):
+    parameters = parameters_from(make_configure(), tick_hz=200_000)
+    assert parameters is not None
+    checks = Checks(parameters, tick_hz=200_000)
 
     def judge(p0, p1):
         return checks.objection(
@@ -111,9 +115,9 @@ def test_outside_its_limits_it_accepts_only_the_way_in(bench):
         )
 
     assert judge(1520, 1519) is None
-    assert judge(1520, 1521).reason is Refusal.JOINT_LIMIT
+    assert judge(1520, 1521) == Objection(Refusal.JOINT_LIMIT, 0)
     assert judge(-1020, -1019) is None
-    assert judge(-1020, -1021).reason is Refusal.JOINT_LIMIT
+    assert judge(-1020, -1021) == Objection(Refusal.JOINT_LIMIT, 0)
 
 
 def forward_of(robot):
@@ -227,6 +231,7 @@ def test_it_brakes_before_it_leaves_the_workspace(delta):
     assert robot.workspace.z[0] - 0.5 <= tip[2] < robot.workspace.z[0] + 20
 
 
+@simulated_only
 def test_without_its_own_workspace_check_it_would_leave(delta, monkeypatch):
     monkeypatch.setattr(Checks, "_workspace_objection", lambda *_: None)
     bench, robot = delta

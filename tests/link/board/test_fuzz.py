@@ -25,6 +25,7 @@ from deltaviz.link.messages import (
     StopCause,
     Tool,
 )
+from tests.link.board.bench import simulated_only
 
 ACCELERATION = 50_000.0
 VELOCITY = 4000.0
@@ -207,6 +208,7 @@ def test_the_fuzz_reaches_the_limits(narrow, accelerations):
     assert {StopCause.UNDERRUN, StopCause.BAD_SEGMENT, StopCause.HOST_STOP} <= causes
 
 
+@simulated_only
 def test_without_the_boards_checks_the_fuzz_finds_broken_limits(narrow, accelerations, monkeypatch):
     monkeypatch.setattr(Checks, "objection", lambda *_, **__: None)
     bench = narrow()
@@ -216,6 +218,7 @@ def test_without_the_boards_checks_the_fuzz_finds_broken_limits(narrow, accelera
     assert top > 2 * ACCELERATION or speed > 2 * VELOCITY or beyond > 50
 
 
+@simulated_only
 def test_without_the_lease_a_silent_host_keeps_it_moving(bench, monkeypatch):
     monkeypatch.setattr(Lease, "remaining", lambda *_: 1_000_000)
     bench.speed_up(500)

@@ -303,7 +303,7 @@ MALFORMED: list[tuple[str, int, bytes]] = [
     ("no such kind of robot", 0x02, b"\x03\x02" + CONFIGURE_PAYLOAD[2:]),
     ("half a bool array", 0x02, CONFIGURE_PAYLOAD[:76] + b"\x02" + CONFIGURE_PAYLOAD[77:]),
     ("no such state", 0x85, struct.pack("<IBBHHIHBBB", 1, 7, 0, 0, 0, 1, 0, 0, 0, 0)),
-    ("no such fault", 0x85, struct.pack("<IBBHHIHBBB", 1, 6, 6, 0, 0, 1, 0, 0, 0, 0)),
+    ("no such fault", 0x85, struct.pack("<IBBHHIHBBB", 1, 6, 7, 0, 0, 1, 0, 0, 0, 0)),
     ("no such cause", 0x86, struct.pack("<HBIB", 1, 11, 2, 0)),
     ("no such refusal", 0x83, b"\x06\x00\xff\xff\xff"),
     ("a refused command that is none", 0x83, b"\x0c\x01\xff\xff\xff"),

@@ -1,0 +1,342 @@
+#include "commands.h"
+
+#include "checks.h"
+#include "turn.h"
+
+#include <math.h>
+#include <string.h>
+
+static void refuse(struct dv_board *board, uint8_t command, enum dv_refusal reason)
+{
+    dv_say_refused(&board->reports, command, (uint8_t)reason, -1, -1);
+}
+
+static bool allowed(struct dv_board *board, uint8_t command, enum dv_event event)
+{
+    uint8_t state = board->control.state;
+    bool possible = dv_state_after(state, event) >= 0;
+    if (!possible) {
+        bool busy = state == DV_STATE_BRAKING || state == DV_STATE_HOMING;
+        refuse(board, command, busy ? DV_REFUSAL_MOVING : DV_REFUSAL_STATE);
+    }
+    return possible;
+}
+
+static struct dv_situation situation(const struct dv_board *board)
+{
+    const struct dv_control *control = &board->control;
+    struct dv_situation at = {
+        .state = control->state,
+        .joints = control->parameters.configure.joints,
+        .idle = dv_control_is_idle(control),
+        .epoch = control->epoch,
+        .now = control->now,
+        .ticks_per_ms = control->ticks_per_ms,
+    };
+    dv_drive_counts(&control->drive, at.counts);
+    return at;
+}
+
+/* Taken before the board is configured, too. */
+
+static void copy_name(char name[DV_TEXT_MAX + 1], const char *from)
+{
+    for (int i = 0; i < DV_TEXT_MAX && from[i] != '\0'; i++) {
+        name[i] = from[i];
+    }
+}
+
+static void hello(struct dv_board *board, const struct dv_hello *message)
+{
+    struct dv_control *control = &board->control;
+    board->speaks = message->version == DV_PROTOCOL_VERSION;
+    dv_control_halt(control, DV_CAUSE_HOST_STOP);
+    dv_lease_expire(&control->lease);
+    struct dv_hello_reply reply = {
+        .version = DV_PROTOCOL_VERSION,
+        .joints = control->parameters.configure.joints,
+        .tick_hz = board->hal->tick_hz,
+        .queue_places = DV_QUEUE_PLACES,
+        .boot = board->hal->boot,
+        .last_epoch = control->epoch,
+        .homed = control->homed,
+        .configuration = control->configuration,
+        .last_stop = control->cause,
+    };
+    copy_name(reply.board, board->hal->board);
+    copy_name(reply.build, board->hal->build);
+    dv_say_hello_reply(&board->reports, &reply);
+}
+
+static void configure(struct dv_board *board, const struct dv_configure *message, uint32_t hash)
+{
+    struct dv_control *control = &board->control;
+    struct dv_parameters parameters;
+    if (hash == control->configuration) {
+        dv_say_configured(&board->reports, hash);
+    } else if (control->state != DV_STATE_DISABLED) {
+        refuse(board, DV_CONFIGURE, DV_REFUSAL_STATE);
+    } else if (!dv_parameters_from(&parameters, message, board->hal->tick_hz)) {
+        refuse(board, DV_CONFIGURE, DV_REFUSAL_CONFIGURATION);
+    } else {
+        control->parameters = parameters;
+        dv_control_configure(control, hash);
+        dv_say_configured(&board->reports, hash);
+    }
+}
+
+static void keep(struct dv_board *board, const struct dv_keep *message)
+{
+    dv_lease_extend(&board->control.lease, message->seen, board->control.now);
+}
+
+static void stop(struct dv_board *board)
+{
+    struct dv_control *control = &board->control;
+    if (dv_control_moves(control) || control->state == DV_STATE_ARMED) {
+        dv_control_halt(control, DV_CAUSE_HOST_STOP);
+    } else {
+        dv_control_say_stopped(control);
+    }
+}
+
+static void reset(struct dv_board *board)
+{
+    struct dv_control *control = &board->control;
+    if (control->estop_input) {
+        refuse(board, DV_RESET, DV_REFUSAL_INPUT);
+    } else if (allowed(board, DV_RESET, DV_EVENT_RESET)) {
+        control->fault = DV_FAULT_NONE;
+        control->homed = false;
+        dv_control_change(control, DV_EVENT_RESET);
+        dv_say_done(&board->reports, DV_RESET);
+    }
+}
+
+/* Need a configuration. */
+
+static void enable(struct dv_board *board)
+{
+    if (board->control.estop_input) {
+        refuse(board, DV_ENABLE, DV_REFUSAL_INPUT);
+    } else if (allowed(board, DV_ENABLE, DV_EVENT_ENABLE)) {
+        dv_control_change(&board->control, DV_EVENT_ENABLE);
+        dv_say_done(&board->reports, DV_ENABLE);
+    }
+}
+
+static void disable(struct dv_board *board)
+{
+    struct dv_control *control = &board->control;
+    if (dv_control_moves(control)) {
+        control->disable_pending = true;
+        dv_control_halt(control, DV_CAUSE_DISABLED);
+    } else if (allowed(board, DV_ENABLE, DV_EVENT_DISABLE)) {
+        dv_control_halt(control, DV_CAUSE_DISABLED);
+        dv_control_change(control, DV_EVENT_DISABLE);
+        control->homed = false;
+        dv_say_done(&board->reports, DV_ENABLE);
+    }
+}
+
+static void home(struct dv_board *board)
+{
+    struct dv_control *control = &board->control;
+    if (!allowed(board, DV_HOME, DV_EVENT_HOME)) {
+        return;
+    }
+    struct dv_situation at = situation(board);
+    if (!at.idle) {
+        refuse(board, DV_HOME, DV_REFUSAL_MOVING);
+    } else if (!control->lease.alive) {
+        refuse(board, DV_HOME, DV_REFUSAL_LEASE);
+    } else if (!dv_within(at.counts, at.joints, DV_HOMING_COUNTS)) {
+        refuse(board, DV_HOME, DV_REFUSAL_COUNTS);
+    } else {
+        dv_control_begin_homing(control);
+    }
+}
+
+static void arm(struct dv_board *board, const struct dv_arm *message)
+{
+    if (!allowed(board, DV_ARM, DV_EVENT_ARM)) {
+        return;
+    }
+    struct dv_situation at = situation(board);
+    uint8_t refusal = dv_arm_refusal(message, &at);
+    if (refusal != 0) {
+        refuse(board, DV_ARM, (enum dv_refusal)refusal);
+    } else {
+        dv_control_open_epoch(&board->control, message);
+        dv_say_done(&board->reports, DV_ARM);
+    }
+}
+
+static struct dv_objection objection(const struct dv_board *board, const struct dv_segment *segment,
+                                     const struct dv_situation *at)
+{
+    const struct dv_control *control = &board->control;
+    const struct dv_knot *origin = &control->queue.knot;
+    if (segment->joints != at->joints) {
+        return (struct dv_objection){DV_REFUSAL_CONFIGURATION, -1};
+    }
+    if (!dv_is_well_timed(segment, at, &control->queue)) {
+        return (struct dv_objection){DV_REFUSAL_TIME, -1};
+    }
+    return dv_check_segment(&control->parameters, board->hal->tick_hz, origin->p, origin->v, segment,
+                            control->homed);
+}
+
+static void segment(struct dv_board *board, const struct dv_segment *message)
+{
+    struct dv_control *control = &board->control;
+    struct dv_situation at = situation(board);
+    uint8_t refusal = dv_segment_refusal(message, &at, &control->queue);
+    if (refusal != 0) {
+        dv_say_refused(&board->reports, DV_SEGMENT, refusal, -1, message->index);
+        return;
+    }
+    struct dv_objection found = objection(board, message, &at);
+    if (found.reason != 0) {
+        dv_say_refused(&board->reports, DV_SEGMENT, found.reason, found.joint, message->index);
+        dv_control_halt(control, DV_CAUSE_BAD_SEGMENT);
+        return;
+    }
+    dv_lease_extend(&control->lease, message->seen, control->now);
+    if (at.idle && !control->lease.alive) {
+        dv_say_refused(&board->reports, DV_SEGMENT, DV_REFUSAL_LEASE, -1, message->index);
+        dv_control_halt(control, DV_CAUSE_LEASE);
+        return;
+    }
+    dv_control_enqueue(control, message);
+}
+
+static void tool(struct dv_board *board, const struct dv_tool *message)
+{
+    uint8_t state = board->control.state;
+    if (!dv_state_is_powered(state) || state == DV_STATE_FAULT) {
+        refuse(board, DV_TOOL, DV_REFUSAL_STATE);
+    } else if (!isfinite(message->servo_angle)) {
+        refuse(board, DV_TOOL, DV_REFUSAL_CONFIGURATION);
+    } else {
+        dv_control_use_tool(&board->control, message);
+        dv_say_done(&board->reports, DV_TOOL);
+    }
+}
+
+/* Of any type that a host sends. */
+union message {
+    struct dv_hello hello;
+    struct dv_configure configure;
+    struct dv_enable enable;
+    struct dv_arm arm;
+    struct dv_segment segment;
+    struct dv_keep keep;
+    struct dv_tool tool;
+};
+
+static bool decode(const struct dv_frame *frame, union message *message)
+{
+    switch (frame->type) {
+    case DV_HELLO:
+        return dv_decode_hello(frame->payload, frame->size, &message->hello);
+    case DV_CONFIGURE:
+        return dv_decode_configure(frame->payload, frame->size, &message->configure);
+    case DV_ENABLE:
+        return dv_decode_enable(frame->payload, frame->size, &message->enable);
+    case DV_HOME:
+        return dv_decode_home(frame->payload, frame->size);
+    case DV_ARM:
+        return dv_decode_arm(frame->payload, frame->size, &message->arm);
+    case DV_SEGMENT:
+        return dv_decode_segment(frame->payload, frame->size, &message->segment);
+    case DV_KEEP:
+        return dv_decode_keep(frame->payload, frame->size, &message->keep);
+    case DV_STOP:
+        return dv_decode_stop(frame->payload, frame->size);
+    case DV_ESTOP:
+        return dv_decode_estop(frame->payload, frame->size);
+    case DV_RESET:
+        return dv_decode_reset(frame->payload, frame->size);
+    case DV_TOOL:
+        return dv_decode_tool(frame->payload, frame->size, &message->tool);
+    default:
+        return false;
+    }
+}
+
+/* Why a message of this type is refused whatever it says; 0: it is not. */
+static uint8_t type_refusal(const struct dv_board *board, uint8_t type)
+{
+    bool stops = type == DV_HELLO || type == DV_STOP || type == DV_ESTOP;
+    if (!board->speaks && !stops) {
+        return DV_REFUSAL_VERSION;
+    }
+    bool needs_robot = type == DV_ENABLE || type == DV_HOME || type == DV_ARM || type == DV_SEGMENT
+        || type == DV_TOOL;
+    return needs_robot && !dv_control_is_configured(&board->control) ? DV_REFUSAL_CONFIGURATION : 0;
+}
+
+static void act(struct dv_board *board, const struct dv_frame *frame, const union message *message)
+{
+    switch (frame->type) {
+    case DV_HELLO:
+        hello(board, &message->hello);
+        break;
+    case DV_CONFIGURE: {
+        uint32_t hash = dv_crc32(frame->payload, frame->size);
+        configure(board, &message->configure, hash == 0 ? 1 : hash);
+        break;
+    }
+    case DV_ENABLE:
+        if (message->enable.on) {
+            enable(board);
+        } else {
+            disable(board);
+        }
+        break;
+    case DV_HOME:
+        home(board);
+        break;
+    case DV_ARM:
+        arm(board, &message->arm);
+        break;
+    case DV_SEGMENT:
+        segment(board, &message->segment);
+        break;
+    case DV_KEEP:
+        keep(board, &message->keep);
+        break;
+    case DV_STOP:
+        stop(board);
+        break;
+    case DV_ESTOP:
+        dv_control_drivers_off(&board->control, DV_FAULT_NONE);
+        break;
+    case DV_RESET:
+        reset(board);
+        break;
+    case DV_TOOL:
+        tool(board, &message->tool);
+        break;
+    default:
+        break;
+    }
+}
+
+void dv_carry_out(struct dv_board *board, const struct dv_frame *frame)
+{
+    union message message;
+    if (!decode(frame, &message) || !dv_endpoint_admits(&board->endpoint, frame)) {
+        return;
+    }
+    board->control.now = board->stepper.now;
+    uint8_t refusal = type_refusal(board, frame->type);
+    if (refusal != 0) {
+        int32_t index = frame->type == DV_SEGMENT ? message.segment.index : -1;
+        dv_say_refused(&board->reports, frame->type, refusal, -1, index);
+    } else {
+        act(board, frame, &message);
+    }
+    dv_control_report(&board->control);
+}
