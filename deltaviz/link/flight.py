@@ -9,12 +9,14 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Sequence
 
-from deltaviz.link.messages import Arm, Segment, Telemetry
+from deltaviz.link.messages import Arm, CartesianSegment, Segment, Telemetry
 from deltaviz.link.rules import since, since16
-from deltaviz.motion.knot import Knot
+from deltaviz.motion.knot import CartesianKnot, Knot
 
 POSITION_UNIT = 1024  # per microstep
 VELOCITY_UNIT = 65536 / 1000  # per microstep per second
+TIP_POSITION_UNIT = 256_000  # per mm
+TIP_VELOCITY_UNIT = 65_536  # per mm/s
 
 
 class Flight:
@@ -37,10 +39,6 @@ class Flight:
         self._t_end = telemetry.now
         self._resting = True
         self._unseen: deque[tuple[int, int]] = deque()  # index, duration of what has no receipt
-        self.theta = tuple(
-            count / scale for count, scale in zip(self._counts, self._scale, strict=True)
-        )
-        self.velocity = tuple(0.0 for _ in self._counts)
 
     @property
     def resting(self) -> bool:
@@ -50,33 +48,33 @@ class Flight:
     def arm(self) -> Arm:
         return Arm(epoch=self.epoch, t_start=self._started, counts=self._counts)
 
-    def segment(self, knot: Knot, telemetry: Telemetry) -> Segment:
+    def segment(
+        self, knot: Knot | CartesianKnot, telemetry: Telemetry
+    ) -> Segment | CartesianSegment:
         """`knot` on the wire. From rest it starts at the board's present tick, that is, at once."""
         duration = round(knot.duration * self._tick_hz)
         start = self._t_end
         if self._resting and since(telemetry.now, start) > 0:
             start = telemetry.now
-        segment = Segment(
-            epoch=self.epoch,
-            index=self._index,
-            t_end=(start + duration) & 0xFFFF_FFFF,
-            duration=duration,
-            seen=telemetry.now,
-            p=tuple(
-                round(angle * scale * POSITION_UNIT)
-                for angle, scale in zip(knot.theta, self._scale, strict=True)
-            ),
-            v=tuple(
-                round(rate * scale * VELOCITY_UNIT)
-                for rate, scale in zip(knot.velocity, self._scale, strict=True)
-            ),
-        )
+        t_end = (start + duration) & 0xFFFF_FFFF
+        when = (self.epoch, self._index, t_end, duration, telemetry.now)
+        if isinstance(knot, Knot):
+            segment = Segment(*when, *self._joints(knot))
+        else:
+            segment = CartesianSegment(*when, *_tip(knot))
         self._unseen.append((segment.index, duration))
         self._index = (self._index + 1) & 0xFFFF
         self._t_end = segment.t_end
         self._resting = not any(segment.v)
-        self.theta, self.velocity = knot.theta, knot.velocity
         return segment
+
+    def _joints(self, knot: Knot) -> tuple[tuple[int, ...], tuple[int, ...]]:
+        theta = zip(knot.theta, self._scale, strict=True)
+        velocity = zip(knot.velocity, self._scale, strict=True)
+        return (
+            tuple(round(angle * scale * POSITION_UNIT) for angle, scale in theta),
+            tuple(round(rate * scale * VELOCITY_UNIT) for rate, scale in velocity),
+        )
 
     def acknowledge(self, telemetry: Telemetry) -> None:
         """Forget what `telemetry` says has been taken into the queue."""
@@ -104,3 +102,9 @@ class Flight:
 
     def _is_armed(self, telemetry: Telemetry) -> bool:
         return telemetry.epoch == self.epoch
+
+
+def _tip(knot: CartesianKnot) -> tuple[tuple[int, int, int], tuple[int, int, int]]:
+    (x, y, z), (vx, vy, vz) = knot.xyz, knot.velocity
+    p, v = TIP_POSITION_UNIT, TIP_VELOCITY_UNIT
+    return (round(x * p), round(y * p), round(z * p)), (round(vx * v), round(vy * v), round(vz * v))

@@ -13,7 +13,7 @@ EStop cuts the present piece, too.
 
 What the board answers: `Refused(command, reason)` or `Done(command)` to Enable, Arm, Reset, Tool
 and Home (Done("home") comes when it stands homed at the ready pose); `Configured` to Configure;
-`HelloReply` to Hello; `Stopped` to Stop. A Segment is answered only when refused, a Keep never.
+`HelloReply` to Hello; `Stopped` to Stop. A segment is answered only when refused, a Keep never.
 `command` is the message's class name in lower case.
 """
 
@@ -83,6 +83,7 @@ class Refusal(IntEnum):
     UNHOMED_SPEED = 15
     LEASE = 16  # `seen` is too old for a motion to begin
     INPUT = 17  # the e-stop input is still active
+    KIND = 18  # a Cartesian segment, or a joint one, where only the other kind is possible
 
 
 class Inputs(IntFlag):
@@ -103,10 +104,17 @@ class TelemetryFlags(IntFlag):
 
 
 class RobotKind(IntEnum):
-    """Which forward kinematics the board guards the workspace with."""
+    """Which kinematics the board has: it guards the workspace by them, and turns Cartesian segments
+    into motions of the joints.
+
+    A rotary delta has three joints, or a fourth that turns its tool: the geometry speaks of the
+    first three. A five-bar has two, the left one first, in the plane of x and z: half of its base
+    and of its platform stand in the places of base and effector radius, and the azimuths are 0.
+    """
 
     JOINTS_ONLY = 0
     ROTARY_DELTA = 1
+    FIVE_BAR = 2
 
 
 class Options(IntFlag):
@@ -136,9 +144,9 @@ class Configure:
     the same integers. Microsteps, and the units of knots: the reals are single precision.
 
     Arrays have one entry per joint, 1 to 4; the geometry is all zeros for a robot that the board
-    guards by its joint limits alone. The board answers with the CRC-32 of these values as bytes;
-    the host compares it with its own. Taken while DISABLED only; the same values again are
-    answered in every state.
+    guards by its joint limits alone, and for a joint that is no arm's. The board answers with the
+    CRC-32 of these values as bytes; the host compares it with its own. Taken while DISABLED only;
+    the same values again are answered in every state.
 
     Refused (CONFIGURATION): what is not finite, but for the bounds of the workspace; what has to be
     positive and is not; a ready pose outside the joint limits or out of reach; more than a step
@@ -234,6 +242,30 @@ class Segment:
 
 
 @dataclass(frozen=True, slots=True)
+class CartesianSegment:
+    """As `Segment`, but of the tool tip (x, y, z): the cubic from the last knot to (p, v), which
+    the board turns into angles itself, at each boundary. Joints beyond the arms stand still.
+
+    p is in 2^-8 micrometres, v in 2^-16 micrometres per millisecond. Only for a homed robot with a
+    geometry. It follows a Cartesian segment or a knot at rest, and a joint segment follows it only
+    where it comes to rest; else KIND, which brakes like all that is wrong with a segment. From rest
+    it starts where the tip is, by the board's own kinematics.
+
+    A board computes in single precision: its counts may differ by one from those of another. What
+    the joints would do is judged at both ends and at most 2 ms apart between them; out of reach, or
+    on the wrong side of a singularity, is outside the workspace.
+    """
+
+    epoch: int
+    index: int
+    t_end: int
+    duration: int
+    seen: int
+    p: tuple[int, int, int]
+    v: tuple[int, int, int]
+
+
+@dataclass(frozen=True, slots=True)
 class Keep:
     """Extends the board's lease: `seen` is the newest telemetry tick that the host had.
 
@@ -302,6 +334,10 @@ class Refused:
     joint: int | None = None
     index: int | None = None  # of a segment
 
+    @property
+    def of_segment(self) -> bool:
+        return self.command in ("segment", "cartesiansegment")
+
 
 @dataclass(frozen=True, slots=True)
 class Done:
@@ -344,5 +380,18 @@ class Stopped:
     counts: tuple[int, ...]
 
 
-HostMessage = Hello | Configure | Enable | Home | Arm | Segment | Keep | Stop | EStop | Reset | Tool
+HostMessage = (
+    Hello
+    | Configure
+    | Enable
+    | Home
+    | Arm
+    | Segment
+    | CartesianSegment
+    | Keep
+    | Stop
+    | EStop
+    | Reset
+    | Tool
+)
 BoardMessage = HelloReply | Configured | Refused | Done | Telemetry | Stopped

@@ -13,7 +13,7 @@ from enum import Enum
 from deltaviz.link import messages as m
 from deltaviz.link.flight import Flight
 from deltaviz.link.rules import LEASE_MS, since
-from deltaviz.motion.knot import Knot
+from deltaviz.motion.knot import CartesianKnot, Knot
 
 STOP_REPEAT = 0.010  # s
 KEEP_PERIOD = 0.025  # s, well within the board's lease
@@ -171,7 +171,7 @@ class Session:
         self.refused = None
         self._out.append(self._flight.arm())
 
-    def segment(self, knot: Knot, now: float) -> None:
+    def segment(self, knot: Knot | CartesianKnot, now: float) -> None:
         """Send one knot of the open epoch."""
         if self._flight is None or self.telemetry is None:
             raise RuntimeError("no epoch is open")
@@ -342,7 +342,7 @@ class Session:
                 "The board is set up for another robot and its drivers are on. Switch it off and "
                 "on again, then connect."
             )
-        elif refused.command == "segment":
+        elif refused.of_segment:
             if self._flight is not None:
                 self.refused = refused
         else:

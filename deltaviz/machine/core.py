@@ -197,7 +197,7 @@ class Core:
         refused, session.refused = session.refused, None
         assert refused is not None
         text = sentences.board_refused(refused)
-        if refused.command in ("arm", "segment"):
+        if refused.command == "arm" or refused.of_segment:
             self.stop(text, now)
         else:
             self._stop_reason = text

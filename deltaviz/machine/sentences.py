@@ -63,11 +63,13 @@ REFUSED_BECAUSE: Final[Mapping[Refusal, str]] = {
     Refusal.UNHOMED_SPEED: "it is too fast for a robot that is not homed",
     Refusal.LEASE: "it came too late",
     Refusal.INPUT: "the hardware emergency stop is still pressed",
+    Refusal.KIND: "it mixes straight and joint motion where the robot does not rest",
 }
 
 
 def board_refused(refused: Refused) -> str:
     """The board's refusal as a sentence."""
-    what = {"arm": "to begin", "segment": "a motion"}.get(refused.command, f"'{refused.command}'")
+    what = "to begin" if refused.command == "arm" else f"'{refused.command}'"
+    what = "a motion" if refused.of_segment else what
     where = "" if refused.joint is None else f" (joint {refused.joint + 1})"
     return f"The board refused {what}: {REFUSED_BECAUSE[refused.reason]}{where}."

@@ -1,4 +1,4 @@
-"""The joint state at the end of one segment: what the follower makes and the link sends."""
+"""The state at the end of one segment: what the follower makes and the link sends."""
 
 from __future__ import annotations
 
@@ -16,3 +16,15 @@ class Knot:
     duration: float
     theta: tuple[float, ...]
     velocity: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class CartesianKnot:
+    """One segment's end, of the tool tip: the board turns the segment into joints itself.
+
+    `duration` is in seconds of board time, `xyz` in mm, `velocity` in mm/s.
+    """
+
+    duration: float
+    xyz: tuple[float, float, float]
+    velocity: tuple[float, float, float]

@@ -12,6 +12,7 @@ _Static_assert(DV_CONFIGURE_SIZE_MAX <= DV_PAYLOAD_MAX, "Configure is too long")
 _Static_assert(DV_ENABLE_SIZE_MAX <= DV_PAYLOAD_MAX, "Enable is too long");
 _Static_assert(DV_ARM_SIZE_MAX <= DV_PAYLOAD_MAX, "Arm is too long");
 _Static_assert(DV_SEGMENT_SIZE_MAX <= DV_PAYLOAD_MAX, "Segment is too long");
+_Static_assert(DV_CARTESIAN_SEGMENT_SIZE_MAX <= DV_PAYLOAD_MAX, "CartesianSegment is too long");
 _Static_assert(DV_KEEP_SIZE_MAX <= DV_PAYLOAD_MAX, "Keep is too long");
 _Static_assert(DV_TOOL_SIZE_MAX <= DV_PAYLOAD_MAX, "Tool is too long");
 _Static_assert(DV_HELLO_REPLY_SIZE_MAX <= DV_PAYLOAD_MAX, "HelloReply is too long");
@@ -30,6 +31,7 @@ static bool is_type(uint8_t value)
     case DV_HOME:
     case DV_ARM:
     case DV_SEGMENT:
+    case DV_CARTESIAN_SEGMENT:
     case DV_KEEP:
     case DV_STOP:
     case DV_ESTOP:
@@ -119,6 +121,7 @@ static bool is_refusal(uint8_t value)
     case DV_REFUSAL_UNHOMED_SPEED:
     case DV_REFUSAL_LEASE:
     case DV_REFUSAL_INPUT:
+    case DV_REFUSAL_KIND:
         return true;
     default:
         return false;
@@ -130,6 +133,7 @@ static bool is_robot_kind(uint8_t value)
     switch (value) {
     case DV_KIND_JOINTS_ONLY:
     case DV_KIND_ROTARY_DELTA:
+    case DV_KIND_FIVE_BAR:
         return true;
     default:
         return false;
@@ -386,6 +390,41 @@ size_t dv_encode_segment(const struct dv_segment *message, uint8_t *payload, siz
         dv_write_i32(&writer, message->p[i]);
     }
     for (size_t i = 0; i < joints; i++) {
+        dv_write_i32(&writer, message->v[i]);
+    }
+    return writer.good ? room - writer.left : 0;
+}
+
+bool dv_decode_cartesian_segment(const uint8_t *payload, size_t size, struct dv_cartesian_segment *message)
+{
+    struct dv_reader reader = {payload, size, true};
+    memset(message, 0, sizeof *message);
+    message->epoch = dv_read_u16(&reader);
+    message->index = dv_read_u16(&reader);
+    message->t_end = dv_read_u32(&reader);
+    message->duration = dv_read_u32(&reader);
+    message->seen = dv_read_u32(&reader);
+    for (size_t i = 0; i < 3; i++) {
+        message->p[i] = dv_read_i32(&reader);
+    }
+    for (size_t i = 0; i < 3; i++) {
+        message->v[i] = dv_read_i32(&reader);
+    }
+    return dv_read_all(&reader);
+}
+
+size_t dv_encode_cartesian_segment(const struct dv_cartesian_segment *message, uint8_t *payload, size_t room)
+{
+    struct dv_writer writer = {payload, room, true};
+    dv_write_u16(&writer, message->epoch);
+    dv_write_u16(&writer, message->index);
+    dv_write_u32(&writer, message->t_end);
+    dv_write_u32(&writer, message->duration);
+    dv_write_u32(&writer, message->seen);
+    for (size_t i = 0; i < 3; i++) {
+        dv_write_i32(&writer, message->p[i]);
+    }
+    for (size_t i = 0; i < 3; i++) {
         dv_write_i32(&writer, message->v[i]);
     }
     return writer.good ? room - writer.left : 0;

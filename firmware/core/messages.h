@@ -19,6 +19,7 @@ enum dv_type {
     DV_HOME = 0x04,
     DV_ARM = 0x05,
     DV_SEGMENT = 0x06,
+    DV_CARTESIAN_SEGMENT = 0x0C,
     DV_KEEP = 0x07,
     DV_STOP = 0x08,
     DV_ESTOP = 0x09,
@@ -84,6 +85,7 @@ enum dv_refusal {
     DV_REFUSAL_UNHOMED_SPEED = 15,
     DV_REFUSAL_LEASE = 16,
     DV_REFUSAL_INPUT = 17,
+    DV_REFUSAL_KIND = 18,
 };
 
 enum dv_inputs {
@@ -106,6 +108,7 @@ enum dv_telemetry_flags {
 enum dv_robot_kind {
     DV_KIND_JOINTS_ONLY = 0,
     DV_KIND_ROTARY_DELTA = 1,
+    DV_KIND_FIVE_BAR = 2,
 };
 
 enum dv_options {
@@ -121,6 +124,7 @@ enum dv_options {
 #define DV_ENABLE_SIZE_MAX 1
 #define DV_ARM_SIZE_MAX 23
 #define DV_SEGMENT_SIZE_MAX 49
+#define DV_CARTESIAN_SEGMENT_SIZE_MAX 40
 #define DV_KEEP_SIZE_MAX 4
 #define DV_TOOL_SIZE_MAX 5
 #define DV_HELLO_REPLY_SIZE_MAX 85
@@ -152,12 +156,12 @@ struct dv_configure {
     uint32_t homing_backoff[DV_JOINTS_MAX]; /* microsteps */
     uint32_t homing_max_travel[DV_JOINTS_MAX]; /* microsteps */
     int32_t ready[DV_JOINTS_MAX]; /* microsteps */
-    /* mm; the geometry is all zeros for a robot guarded by its joints alone */
-    float base_radius[DV_JOINTS_MAX];
-    float effector_radius[DV_JOINTS_MAX]; /* mm */
+    float base_radius[DV_JOINTS_MAX]; /* mm; centre to motor axis; of a five-bar, half its base */
+    /* mm; centre to the forearm's joint; of a five-bar, half its platform */
+    float effector_radius[DV_JOINTS_MAX];
     float upper_arm[DV_JOINTS_MAX]; /* mm */
     float forearm[DV_JOINTS_MAX]; /* mm */
-    float azimuth[DV_JOINTS_MAX]; /* rad */
+    float azimuth[DV_JOINTS_MAX]; /* rad; of a five-bar: 0 */
     float tool_offset[3]; /* mm */
     float workspace_x[2]; /* mm; infinite: unbounded */
     float workspace_y[2]; /* mm */
@@ -185,6 +189,16 @@ struct dv_segment {
     uint8_t joints;
     int32_t p[DV_JOINTS_MAX]; /* 2^-10 microsteps */
     int32_t v[DV_JOINTS_MAX]; /* 2^-16 microsteps/ms */
+};
+
+struct dv_cartesian_segment {
+    uint16_t epoch;
+    uint16_t index;
+    uint32_t t_end; /* ticks */
+    uint32_t duration; /* ticks */
+    uint32_t seen; /* ticks */
+    int32_t p[3]; /* 2^-8 um */
+    int32_t v[3]; /* 2^-16 um/ms */
 };
 
 struct dv_keep {
@@ -254,6 +268,7 @@ bool dv_decode_enable(const uint8_t *payload, size_t size, struct dv_enable *mes
 bool dv_decode_home(const uint8_t *payload, size_t size);
 bool dv_decode_arm(const uint8_t *payload, size_t size, struct dv_arm *message);
 bool dv_decode_segment(const uint8_t *payload, size_t size, struct dv_segment *message);
+bool dv_decode_cartesian_segment(const uint8_t *payload, size_t size, struct dv_cartesian_segment *message);
 bool dv_decode_keep(const uint8_t *payload, size_t size, struct dv_keep *message);
 bool dv_decode_stop(const uint8_t *payload, size_t size);
 bool dv_decode_estop(const uint8_t *payload, size_t size);
@@ -272,6 +287,7 @@ size_t dv_encode_configure(const struct dv_configure *message, uint8_t *payload,
 size_t dv_encode_enable(const struct dv_enable *message, uint8_t *payload, size_t room);
 size_t dv_encode_arm(const struct dv_arm *message, uint8_t *payload, size_t room);
 size_t dv_encode_segment(const struct dv_segment *message, uint8_t *payload, size_t room);
+size_t dv_encode_cartesian_segment(const struct dv_cartesian_segment *message, uint8_t *payload, size_t room);
 size_t dv_encode_keep(const struct dv_keep *message, uint8_t *payload, size_t room);
 size_t dv_encode_tool(const struct dv_tool *message, uint8_t *payload, size_t room);
 size_t dv_encode_hello_reply(const struct dv_hello_reply *message, uint8_t *payload, size_t room);

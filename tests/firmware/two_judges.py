@@ -11,15 +11,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from math import inf
-from typing import Any
 
 import numpy as np
 import pytest
 
 from deltaviz import load_robot
 from deltaviz.link.board import checks as slack
-from deltaviz.link.board.checks import Checks, Objection
-from deltaviz.link.board.parameters import parameters_from
+from deltaviz.link.board.checks import Checks
+from deltaviz.link.board.limits import Limits, Objection
+from deltaviz.link.board.parameters import Parameters, parameters_from
 from deltaviz.link.configuration import configure_from
 from deltaviz.link.messages import Configure, Options, RobotKind, Segment
 from deltaviz.mechanism import RotaryDelta
@@ -46,16 +46,16 @@ class Knots:
     homed: bool = True
 
 
-class Watched(Checks):
-    """Remembers the poses that it looked at."""
+class Watched(Limits):
+    """Remembers the poses that were looked at."""
 
-    def __init__(self, *arguments: Any, **named: Any) -> None:
-        super().__init__(*arguments, **named)
+    def __init__(self, parameters: Parameters) -> None:
+        super().__init__(parameters)
         self.poses: list[list[float]] = []
 
-    def _outside(self, microsteps: Sequence[float]) -> float:
-        self.poses.append([p / m for p, m in zip(microsteps, self._per_rad, strict=True)])
-        return super()._outside(microsteps)
+    def outside_at(self, microsteps: Sequence[float]) -> float:
+        self.poses.append([p / m for p, m in zip(microsteps, self.per_rad, strict=True)])
+        return super().outside_at(microsteps)
 
 
 class Both:
@@ -69,8 +69,8 @@ class Both:
         self.configure = configure
         self._mechanism = mechanism
         self._in_c = in_c
-        self._strict = Watched(parameters, tick_hz=TICK_HZ)
-        self._loose = Watched(parameters, tick_hz=TICK_HZ)
+        self._strict = Watched(parameters)
+        self._loose = Watched(parameters)
 
     def c_answer(self, knots: Knots) -> tuple[int, int]:
         segment = Segment(
@@ -90,11 +90,11 @@ class Both:
         strict = _ask(self._strict, knots)
         start = [p / 1024 for p in knots.p0]
         low, high = (
-            zip(self._strict._low, start, strict=True),
-            zip(self._strict._high, start, strict=True),
+            zip(self._strict.low, start, strict=True),
+            zip(self._strict.high, start, strict=True),
         )
-        self._loose._low = [min(pair) - 2 * POSITION_ERROR for pair in low]
-        self._loose._high = [max(pair) + 2 * POSITION_ERROR for pair in high]
+        self._loose.low = [min(pair) - 2 * POSITION_ERROR for pair in low]
+        self._loose.high = [max(pair) + 2 * POSITION_ERROR for pair in high]
         with pytest.MonkeyPatch.context() as patch:
             # The slack of accelerations and speeds has a part that does not grow with them.
             patch.setattr(slack, "RELATIVE_SLACK", slack.RELATIVE_SLACK + 3 * RELATIVE_ERROR)
@@ -127,8 +127,8 @@ class Both:
         return bool(near.any())
 
 
-def _ask(checks: Checks, knots: Knots) -> tuple[int, int]:
-    found: Objection | None = checks.objection(
+def _ask(limits: Limits, knots: Knots) -> tuple[int, int]:
+    found: Objection | None = Checks(limits, tick_hz=TICK_HZ).objection(
         p0=knots.p0, v0=knots.v0, p1=knots.p1, v1=knots.v1, ticks=knots.ticks, homed=knots.homed
     )
     if found is None:

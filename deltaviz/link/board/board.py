@@ -6,10 +6,12 @@ from collections.abc import Callable, Sequence
 from math import isfinite
 from typing import Any
 
-from deltaviz.link.board.checks import Objection
-from deltaviz.link.board.control import ConfiguredBoard, Control
+from deltaviz.link.board.configured import ConfiguredBoard
+from deltaviz.link.board.control import Control
+from deltaviz.link.board.limits import Objection
 from deltaviz.link.board.parameters import Parameters, parameters_from
 from deltaviz.link.board.plant import Plant, power_up_pose
+from deltaviz.link.board.queue import Knot
 from deltaviz.link.board.states import TRANSITIONS, BoardEvent
 from deltaviz.link.board.turn import HOMING_COUNTS, arm_refusal, segment_refusal, well_timed, within
 from deltaviz.link.configuration import configuration_hash
@@ -18,6 +20,7 @@ from deltaviz.link.messages import (
     Arm,
     BoardMessage,
     BoardState,
+    CartesianSegment,
     Configure,
     Configured,
     Enable,
@@ -78,6 +81,7 @@ class SimulatedBoard:
             Home: self._home,
             Arm: self._arm,
             Segment: self._segment,
+            CartesianSegment: self._segment,
             Tool: self._tool,
         }
 
@@ -249,7 +253,7 @@ class SimulatedBoard:
         control.open_epoch(robot, message)
         self._reports.done(message)
 
-    def _segment(self, message: Segment, robot: ConfiguredBoard) -> None:
+    def _segment(self, message: Segment | CartesianSegment, robot: ConfiguredBoard) -> None:
         control = self._control
         refusal = segment_refusal(
             message, state=control.state, epoch=control.epoch, queue=control.queue
@@ -257,8 +261,10 @@ class SimulatedBoard:
         if refusal is not None:
             self._reports.refuse(message, refusal)
             return
-        objection = self._objection(message, robot)
-        if objection is not None:
+        origin = robot.origin(message, control.queue.knot, homed=control.homed)
+        objection = self._objection(message, origin, robot)
+        if objection is not None or origin is None:
+            objection = objection or Objection(Refusal.KIND)
             self._reports.refuse(message, objection.reason, joint=objection.joint)
             control.halt(StopCause.BAD_SEGMENT)
             return
@@ -267,25 +273,21 @@ class SimulatedBoard:
             self._reports.refuse(message, Refusal.LEASE)
             control.halt(StopCause.LEASE)
             return
-        control.enqueue(message)
+        control.enqueue(message, origin)
 
-    def _objection(self, message: Segment, robot: ConfiguredBoard) -> Objection | None:
+    def _objection(
+        self, message: Segment | CartesianSegment, origin: Knot | None, robot: ConfiguredBoard
+    ) -> Objection | None:
+        """`origin` is None where this kind of segment is not possible."""
         control = self._control
-        if not len(message.p) == len(message.v) == robot.parameters.joints:
+        if isinstance(message, Segment) and len(message.p) != robot.parameters.joints:
             return Objection(Refusal.CONFIGURATION)
         idle_at = control.now if control.idle else None
         if not well_timed(
             message, idle_at=idle_at, queue=control.queue, ticks_per_ms=control.ticks_per_ms
         ):
             return Objection(Refusal.TIME)
-        return robot.checks.objection(
-            p0=control.queue.knot.p,
-            v0=control.queue.knot.v,
-            p1=message.p,
-            v1=message.v,
-            ticks=message.duration,
-            homed=control.homed,
-        )
+        return None if origin is None else robot.objection(message, origin, homed=control.homed)
 
     def _keep(self, message: Keep) -> None:
         self._control.lease.extend(message.seen, self._control.now)

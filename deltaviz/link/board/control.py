@@ -6,21 +6,16 @@ inputs, judges the lease, notices rest, goes on with homing, and plans the piece
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
-from deltaviz.link.board.checks import Checks
-from deltaviz.link.board.drive import Drive
+from deltaviz.link.board.configured import ConfiguredBoard
 from deltaviz.link.board.homing import Homing
 from deltaviz.link.board.lease import Lease
-from deltaviz.link.board.parameters import Parameters
-from deltaviz.link.board.paths import Cubic
-from deltaviz.link.board.plant import Plant
-from deltaviz.link.board.queue import Entry, SegmentQueue
+from deltaviz.link.board.queue import Knot, SegmentQueue
 from deltaviz.link.board.reports import Reports
 from deltaviz.link.board.states import POWERED, TRANSITIONS, BoardEvent
 from deltaviz.link.messages import (
     Arm,
     BoardState,
+    CartesianSegment,
     Enable,
     Fault,
     Home,
@@ -37,32 +32,6 @@ from deltaviz.link.rules import LEASE_MS, QUEUE_PLACES, since
 
 MASK = 0xFFFF_FFFF
 _PASSED = (StopCause.NONE, StopCause.BOOT, StopCause.HOMED)  # not the cause of a stop
-
-
-class ConfiguredBoard:
-    """A board that knows its robot: the parts that depend on it."""
-
-    def __init__(
-        self, parameters: Parameters, *, theta: Sequence[float], hash_: int, tick_hz: int
-    ) -> None:
-        """`theta` is the hidden pose of the arms (rad)."""
-        self.parameters = parameters
-        self.hash = hash_
-        self.checks = Checks(parameters, tick_hz=tick_hz)
-        plant = Plant(parameters, theta=theta)
-        self.drive = Drive(parameters, plant, ticks_per_ms=tick_hz // 1000)
-        self.ticks_per_ms = tick_hz // 1000
-
-    def path(self, entry: Entry) -> Cubic:
-        segment, origin = entry.segment, entry.origin
-        return Cubic(
-            start=origin.p,
-            end=segment.p,
-            v_start=origin.v,
-            v_end=segment.v,
-            ticks=segment.duration,
-            ticks_per_ms=self.ticks_per_ms,
-        )
 
 
 class Control:
@@ -137,8 +106,8 @@ class Control:
         self.queue.open(p, t_start=arm.t_start, planned=self.planned)
         self.change(BoardEvent.ARM)
 
-    def enqueue(self, segment: Segment) -> None:
-        self.queue.push(segment, planned=self.planned, idle=self.idle)
+    def enqueue(self, segment: Segment | CartesianSegment, origin: Knot) -> None:
+        self.queue.push(segment, origin, planned=self.planned, idle=self.idle)
 
     # Time.
 
@@ -171,9 +140,7 @@ class Control:
             self._notice_rest(self.robot)
             if self._homing is not None:
                 self._go_on_homing(self.robot, self._homing)
-            while self._changes_path(self.robot, until):
-                pass
-            self.robot.drive.plan(until)
+            self._plan(self.robot, until)
         self.planned = until
         self.reports.pieces -= 1
         self.report()
@@ -247,6 +214,15 @@ class Control:
             drive.place(homing.referenced(drive.positions))
             drive.follow(homing.way_to_ready(drive.counts), self.planned)
             self._homing = None
+
+    def _plan(self, robot: ConfiguredBoard, until: int) -> None:
+        while self._changes_path(robot, until):
+            pass
+        if not robot.drive.plan(until):
+            # A tip's path that was judged by looks leads out of reach between them.
+            self.queue.clear()
+            self._brake(robot, StopCause.BAD_SEGMENT)
+            robot.drive.plan(until)
 
     def _changes_path(self, robot: ConfiguredBoard, until: int) -> bool:
         """Whether a path was left that ends before `until`, or taken up that begins before."""

@@ -62,22 +62,28 @@ class Drive:
         self.end = (start + path.ticks) & 0xFFFF_FFFF
 
     def brake(self, tick: int) -> None:
-        """Leaves the path along its tangent at `tick`, where the plan ends or the path does."""
+        """Leaves the path along its tangent, at `tick`: where the plan ends, or the path does. One
+        that has not begun by then is left where it begins.
+        """
         if self.path is None:
             return
-        at = since(tick, self._start)
+        at = max(0, since(tick, self._start))
+        positions, velocities = self.path.positions(at), self.path.velocities(at)
+        if positions is None or velocities is None:
+            self.path = None
+            return
         path = brake(
-            positions=self.path.positions(at),
-            velocities=self.path.velocities(at),
+            positions=positions,
+            velocities=velocities,
             accelerations=self._accelerations,
             ticks_per_ms=self._ticks_per_ms,
         )
-        self.follow(path, tick)
+        self.follow(path, (self._start + at) & 0xFFFF_FFFF)
 
     def rest(self) -> None:
         """The path has ended, and it ended at rest."""
         assert self.path is not None
-        self.planned = self.path.positions(self.path.ticks)
+        self.planned = self.path.positions(self.path.ticks) or self.planned
         self.path = None
 
     def advance(self, ticks: int) -> None:
@@ -88,8 +94,12 @@ class Drive:
             self._stepper.begin_piece()
             self.plant.step(self._stepper.counts)
 
-    def plan(self, tick: int) -> None:
-        """Until `tick`, one piece beyond the plan."""
+    def plan(self, tick: int) -> bool:
+        """Until `tick`, one piece beyond the plan. False: the path leads nowhere there."""
         if self.path is not None:
-            self.planned = self.path.positions(since(tick, self._start))
+            positions = self.path.positions(since(tick, self._start))
+            if positions is None:
+                return False
+            self.planned = positions
         self._stepper.plan(self.planned)
+        return True

@@ -1,92 +1,159 @@
-"""The board's own forward kinematics, one pose at a time, in plain arithmetic: independent of the
-host's, and in the shape that the firmware takes.
+"""The board's own kinematics, one pose at a time, in plain arithmetic: independent of the host's,
+and in the shape that the firmware takes.
 
-Elbow centres moved inward, D_i, then the general trilateration of three spheres of radii l_i:
-with a = D2 - D1, b = D3 - D1, n = a × b, alpha = (|a|² + l1² - l2²) / 2,
-beta = (|b|² + l1² - l3²) / 2, w = (alpha b × n + beta n × a) / n²:
-P = D1 + w - n √((l1² - |w|²) / n²), the working assembly.
+Each arm stands at its azimuth; moved inward by the effector's radius, the forearms meet in one
+point P. In an arm's own plane P is p outward from the motor axis and z up, and v beside it:
+K = (p² + v² + z² + L² - l²) / 2L, ρ² = p² + z², q = √(ρ² - K²), θ = atan2(-z K - p q, p K - z q),
+the elbow outside. With the elbow's centre D, S = P - D and D' = ∂D/∂θ, the constraint S² = l² gives
+θ̇ = S·Ṗ / S·D' and θ̈ = ((Ṗ - D' θ̇)² + S·P̈ - S·D'' θ̇²) / S·D'.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import cos, sin, sqrt
-from typing import Protocol
+from dataclasses import dataclass
+from math import atan2, cos, sin, sqrt
+from typing import NamedTuple
 
 Vector = tuple[float, float, float]
 
+_EDGE_ROUNDING = 1e-15  # of ρ² - K², relative to the sum of the squares that make K
 
-class ForwardKinematics(Protocol):
-    def tip(self, theta: Sequence[float]) -> Vector | None:
-        """The tool tip (mm) at joint angles (rad); None where the forearms cannot meet, or where
-        an arm has passed the edge of its reach (elbow inside).
+
+class JointMotion(NamedTuple):
+    """Of one joint; `gain`: how far it turns for a mm of the tip along the forearm (rad/mm)."""
+
+    angle: float  # rad
+    rate: float  # rad/s
+    acceleration: float  # rad/s²
+    gain: float
+
+
+@dataclass(frozen=True, slots=True)
+class Arm:
+    """`offset` is base radius minus effector radius; lengths in mm; of the azimuth, its cosine and
+    sine.
+    """
+
+    offset: float
+    upper_arm: float
+    forearm: float
+    cos: float
+    sin: float
+
+    def elbow(self, cosine: float, sine: float) -> Vector:
+        """D at the joint angle of this cosine and sine."""
+        out = self.offset + self.upper_arm * cosine
+        return (out * self.cos, out * self.sin, -self.upper_arm * sine)
+
+    def angle(self, x: float, y: float, z: float) -> float | None:
+        """Where P is; None out of reach."""
+        p = x * self.cos + y * self.sin - self.offset
+        v = y * self.cos - x * self.sin
+        upper, fore = self.upper_arm, self.forearm
+        square = p * p + v * v + z * z
+        k = (square + (upper - fore) * (upper + fore)) / (2 * upper)
+        rest = p * p + z * z - k * k
+        edge = _EDGE_ROUNDING * abs(k) * (square + upper * upper + fore * fore) / upper
+        if not rest >= -edge:
+            return None
+        q = sqrt(max(rest, 0.0))
+        return atan2(-z * k - p * q, p * k - z * q)
+
+    def motion(
+        self, theta: float, forearm: Vector, velocity: Vector, turn: Vector
+    ) -> JointMotion | None:
+        """`forearm` is S, `velocity` and `turn` are P's velocity and acceleration. None at the very
+        edge of reach.
         """
-        ...
+        sx, sy, sz = forearm
+        cosine, sine, upper = cos(theta), sin(theta), self.upper_arm
+        outward = sx * self.cos + sy * self.sin
+        lever = -upper * (outward * sine + sz * cosine)  # S·D'
+        if not lever > 0.0:
+            return None
+        rate = (sx * velocity[0] + sy * velocity[1] + sz * velocity[2]) / lever
+        # Ṗ - D' θ̇
+        along = upper * sine * rate
+        wx = velocity[0] + along * self.cos
+        wy = velocity[1] + along * self.sin
+        wz = velocity[2] + upper * cosine * rate
+        pull = sx * turn[0] + sy * turn[1] + sz * turn[2]
+        bend = upper * (sz * sine - outward * cosine)  # S·D''
+        acceleration = (wx * wx + wy * wy + wz * wz + pull - bend * rate * rate) / lever
+        return JointMotion(theta, rate, acceleration, self.forearm / lever)
 
 
-class RotaryDeltaForward:
-    """Three numbers each: mm, and the azimuths in rad."""
+class Kinematics:
+    """What all kinds of arms have in common; they differ in how their forearms meet."""
 
-    def __init__(
-        self,
-        *,
-        base_radius: Sequence[float],
-        effector_radius: Sequence[float],
-        upper_arm: Sequence[float],
-        forearm: Sequence[float],
-        azimuth: Sequence[float],
-        tool_offset: Sequence[float],
-    ) -> None:
-        self._tool = tuple(tool_offset)
-        self._arms = tuple(
-            (base_radius[i] - effector_radius[i], upper_arm[i], cos(azimuth[i]), sin(azimuth[i]))
-            for i in range(3)
-        )
-        self._forearms = tuple(forearm)
+    def __init__(self, arms: Sequence[Arm], *, tool_offset: Sequence[float]) -> None:
+        self.arms = tuple(arms)
+        x, y, z = tool_offset
+        self._tool = (x, y, z)
 
     def tip(self, theta: Sequence[float]) -> Vector | None:
+        """The tool tip (mm) at joint angles (rad) of the arms; None where the forearms cannot meet,
+        or where an arm has passed the edge of its reach (elbow inside).
+        """
         angles = [(cos(angle), sin(angle)) for angle in theta]
-        elbows: list[Vector] = []
-        for (offset, upper, cos_azimuth, sin_azimuth), (cos_angle, sin_angle) in zip(
-            self._arms, angles, strict=True
-        ):
-            out = offset + upper * cos_angle
-            elbows.append((out * cos_azimuth, out * sin_azimuth, -upper * sin_angle))
-        centre = _meet(elbows[0], elbows[1], elbows[2], *self._forearms)
+        elbows = [arm.elbow(*angle) for arm, angle in zip(self.arms, angles, strict=True)]
+        centre = self._meet(elbows)
         if centre is None:
             return None
         x, y, z = centre
-        for (_, _, cos_azimuth, sin_azimuth), (cos_angle, sin_angle), elbow in zip(
-            self._arms, angles, elbows, strict=True
-        ):
-            outward = (x - elbow[0]) * cos_azimuth + (y - elbow[1]) * sin_azimuth
-            if outward * sin_angle + (z - elbow[2]) * cos_angle >= 0.0:
+        for arm, (cosine, sine), elbow in zip(self.arms, angles, elbows, strict=True):
+            outward = (x - elbow[0]) * arm.cos + (y - elbow[1]) * arm.sin
+            if outward * sine + (z - elbow[2]) * cosine >= 0.0:
                 return None
         tool = self._tool
         return (x + tool[0], y + tool[1], z + tool[2])
 
+    def angles(self, tip: Vector) -> list[float] | None:
+        """The joint angles of the arms (rad); None where an arm cannot reach."""
+        centre = self._centre(tip)
+        return None if centre is None else self._angles(centre)
 
-def _meet(
-    first: Vector, second: Vector, third: Vector, l1: float, l2: float, l3: float
-) -> Vector | None:
-    """Where three spheres meet, on the side of the working assembly.
+    def motions(
+        self, tip: Vector, velocity: Vector, acceleration: Vector
+    ) -> list[JointMotion] | None:
+        """Of the arms' joints, for a tip that moves so (mm, s); None where an arm cannot reach, or
+        the forearms meet on the wrong side.
+        """
+        centre = self._centre(tip)
+        theta = None if centre is None else self._angles(centre)
+        if centre is None or theta is None:
+            return None
+        forearms: list[Vector] = []
+        found: list[JointMotion] = []
+        for arm, angle in zip(self.arms, theta, strict=True):
+            x, y, z = arm.elbow(cos(angle), sin(angle))
+            forearm = (centre[0] - x, centre[1] - y, centre[2] - z)
+            motion = arm.motion(angle, forearm, velocity, acceleration)
+            if motion is None:
+                return None
+            forearms.append(forearm)
+            found.append(motion)
+        return found if self._works(forearms) else None
 
-    Written out in scalars: it runs four times for each segment.
-    """
-    x1, y1, z1 = first
-    ax, ay, az = second[0] - x1, second[1] - y1, second[2] - z1
-    bx, by, bz = third[0] - x1, third[1] - y1, third[2] - z1
-    nx, ny, nz = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
-    n2 = nx * nx + ny * ny + nz * nz
-    if n2 < 1e-9:
-        return None
-    alpha = (ax * ax + ay * ay + az * az + l1 * l1 - l2 * l2) / (2 * n2)
-    beta = (bx * bx + by * by + bz * bz + l1 * l1 - l3 * l3) / (2 * n2)
-    wx = alpha * (by * nz - bz * ny) + beta * (ny * az - nz * ay)
-    wy = alpha * (bz * nx - bx * nz) + beta * (nz * ax - nx * az)
-    wz = alpha * (bx * ny - by * nx) + beta * (nx * ay - ny * ax)
-    height2 = l1 * l1 - (wx * wx + wy * wy + wz * wz)
-    if height2 < 0.0:
-        return None
-    k = sqrt(height2 / n2)
-    return (x1 + wx - nx * k, y1 + wy - ny * k, z1 + wz - nz * k)
+    def _angles(self, centre: Vector) -> list[float] | None:
+        found: list[float] = []
+        for arm in self.arms:
+            angle = arm.angle(*centre)
+            if angle is None:
+                return None
+            found.append(angle)
+        return found
+
+    def _centre(self, tip: Vector) -> Vector | None:
+        """The effector's centre, or None where none of this kind can be."""
+        tool = self._tool
+        return (tip[0] - tool[0], tip[1] - tool[1], tip[2] - tool[2])
+
+    def _meet(self, elbows: Sequence[Vector]) -> Vector | None:
+        """P of the working assembly."""
+        raise NotImplementedError
+
+    def _works(self, forearms: Sequence[Vector]) -> bool:
+        """Whether these, which do meet, do so in the working assembly."""
+        raise NotImplementedError

@@ -6,7 +6,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from math import isfinite
 
-from deltaviz.link.board.kinematics import ForwardKinematics, RotaryDeltaForward
+from deltaviz.link.board.five_bar import FiveBar
+from deltaviz.link.board.kinematics import Kinematics
+from deltaviz.link.board.rotary_delta import RotaryDelta
 from deltaviz.link.messages import Configure, Options, RobotKind
 
 _TO_Q32 = 8  # from 2^-24
@@ -25,33 +27,50 @@ class Parameters:
     joints: int
     accelerations: tuple[int, ...]
     homing_together: bool
-    forward: ForwardKinematics | None
+    kinematics: Kinematics | None  # of the first joints
 
 
 def parameters_from(configure: Configure, *, tick_hz: int) -> Parameters | None:
     """None for a configuration that makes no sense: `Configure` says which do not."""
     if not _makes_sense(configure, tick_hz):
         return None
-    forward = None
-    if configure.kind is RobotKind.ROTARY_DELTA:
-        forward = RotaryDeltaForward(
-            base_radius=configure.base_radius,
-            effector_radius=configure.effector_radius,
-            upper_arm=configure.upper_arm,
-            forearm=configure.forearm,
-            azimuth=configure.azimuth,
-            tool_offset=configure.tool_offset,
-        )
-        per_rad = configure.microsteps_per_rad
-        if forward.tip([r / m for r, m in zip(configure.ready, per_rad, strict=True)]) is None:
-            return None
+    kinematics = _kinematics(configure)
+    if kinematics is not None and not _ready_has_a_tip(configure, kinematics):
+        return None
     return Parameters(
         configure=configure,
         joints=len(configure.ready),
         accelerations=tuple(a << _TO_Q32 for a in configure.acceleration),
         homing_together=Options.HOMING_TOGETHER in configure.options,
-        forward=forward,
+        kinematics=kinematics,
     )
+
+
+def _kinematics(c: Configure) -> Kinematics | None:
+    if c.kind is RobotKind.ROTARY_DELTA:
+        return RotaryDelta(
+            base_radius=c.base_radius[:3],
+            effector_radius=c.effector_radius[:3],
+            upper_arm=c.upper_arm[:3],
+            forearm=c.forearm[:3],
+            azimuth=c.azimuth[:3],
+            tool_offset=c.tool_offset,
+        )
+    if c.kind is RobotKind.FIVE_BAR:
+        return FiveBar(
+            base_half=c.base_radius,
+            platform_half=c.effector_radius,
+            upper_arm=c.upper_arm,
+            forearm=c.forearm,
+            tool_offset=c.tool_offset,
+        )
+    return None
+
+
+def _ready_has_a_tip(c: Configure, kinematics: Kinematics) -> bool:
+    arms = len(kinematics.arms)
+    pose = zip(c.ready[:arms], c.microsteps_per_rad[:arms], strict=True)
+    return kinematics.tip([ready / m for ready, m in pose]) is not None
 
 
 def _makes_sense(configure: Configure, tick_hz: int) -> bool:
@@ -59,7 +78,8 @@ def _makes_sense(configure: Configure, tick_hz: int) -> bool:
     joints = len(c.microsteps_per_rad)
     per_joint = (c.joint_min, c.joint_max, c.velocity, c.acceleration, c.unhomed_velocity)
     per_joint += (c.inverted, c.homing_switch, c.homing_fast, c.homing_slow, c.homing_backoff)
-    per_joint += (c.homing_max_travel, c.ready)
+    per_joint += (c.homing_max_travel, c.ready, c.base_radius, c.effector_radius, c.upper_arm)
+    per_joint += (c.forearm, c.azimuth)
     return (
         1 <= joints <= 4
         and all(len(values) == joints for values in per_joint)
@@ -70,6 +90,7 @@ def _makes_sense(configure: Configure, tick_hz: int) -> bool:
             and _homing_makes_sense(c, joint)
             for joint in range(joints)
         )
+        and len(c.tool_offset) == 3
         and _finite(c.tool_offset)
         and all(low < high for low, high in (c.workspace_x, c.workspace_y, c.workspace_z))
         and c.workspace_radius > 0
@@ -109,11 +130,12 @@ def _homing_makes_sense(c: Configure, joint: int) -> bool:
 
 
 def _geometry_makes_sense(c: Configure) -> bool:
-    arms = (c.base_radius, c.effector_radius, c.upper_arm, c.forearm, c.azimuth)
+    arms, joints = (2, (2,)) if c.kind is RobotKind.FIVE_BAR else (3, (3, 4))
+    numbers = (c.base_radius, c.effector_radius, c.upper_arm, c.forearm, c.azimuth)
     return (
-        len(c.ready) == len(c.tool_offset) == 3
-        and all(len(values) == 3 and _finite(values) for values in arms)
-        and min(*c.upper_arm, *c.forearm) > 0
+        len(c.ready) in joints
+        and all(_finite(values[:arms]) for values in numbers)
+        and min(*c.upper_arm[:arms], *c.forearm[:arms]) > 0
     )
 
 

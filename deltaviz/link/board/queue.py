@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from dataclasses import dataclass
 
-from deltaviz.link.messages import Segment
+from deltaviz.link.messages import CartesianSegment, Segment
 from deltaviz.link.rules import since
 
 MASK = 0xFFFF_FFFF
@@ -13,10 +13,13 @@ MASK = 0xFFFF_FFFF
 
 @dataclass(frozen=True, slots=True)
 class Knot:
-    """Where segments meet, in units of the messages."""
+    """Where segments meet, in units of the messages: of the joints, or of the tool tip (x, y, z)
+    and whatever joints there are beyond the arms.
+    """
 
     p: tuple[int, ...]
     v: tuple[int, ...]
+    cartesian: bool = False
 
     @property
     def rests(self) -> bool:
@@ -25,9 +28,10 @@ class Knot:
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    segment: Segment
     origin: Knot
+    knot: Knot
     start: int  # board tick
+    duration: int
 
 
 class SegmentQueue:
@@ -62,23 +66,34 @@ class SegmentQueue:
         self.next_index = 0
         self.knot = Knot(p, (0,) * len(p))
 
-    def push(self, segment: Segment, *, planned: int, idle: bool) -> None:
-        """Nothing begins before `planned`, the tick until which motion is planned. `idle`: nothing
-        moves and nothing waits to, maybe since long ago.
+    def push(
+        self, segment: Segment | CartesianSegment, origin: Knot, *, planned: int, idle: bool
+    ) -> None:
+        """`origin` is `knot`, as the segment speaks of it. Nothing begins before `planned`, the
+        tick until which motion is planned. `idle`: nothing moves and nothing waits to, maybe since
+        long ago.
         """
         start = self.end
-        if self.knot.rests:
+        if origin.rests:
             earliest = planned if idle or since(planned, self.end) > 0 else self.end
             wait = since(segment.t_end - segment.duration, earliest)
             start = (earliest + max(wait, 0)) & MASK
-        self._entries.append(Entry(segment, self.knot, start))
+        self.knot = knot_of(segment, origin)
+        self._entries.append(Entry(origin, self.knot, start, segment.duration))
         self.end = (start + segment.duration) & MASK
         self.nominal_end = segment.t_end
         self.next_index = (segment.index + 1) & 0xFFFF
-        self.knot = Knot(segment.p, segment.v)
 
     def pop(self) -> Entry:
         return self._entries.popleft()
 
     def clear(self) -> None:
         self._entries.clear()
+
+
+def knot_of(segment: Segment | CartesianSegment, origin: Knot) -> Knot:
+    """Where a segment leads, whose `origin` is of its own kind."""
+    if isinstance(segment, Segment):
+        return Knot(segment.p, segment.v)
+    held = origin.p[3:]
+    return Knot((*segment.p, *held), (*segment.v, *(0 for _ in held)), cartesian=True)

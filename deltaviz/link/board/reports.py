@@ -6,7 +6,15 @@ queue is never older than that, at 200 messages a second, a tenth of what 921600
 
 from __future__ import annotations
 
-from deltaviz.link.messages import BoardMessage, Done, HostMessage, Refusal, Refused, Segment
+from deltaviz.link.messages import (
+    BoardMessage,
+    CartesianSegment,
+    Done,
+    HostMessage,
+    Refusal,
+    Refused,
+    Segment,
+)
 from deltaviz.link.rules import TELEMETRY_MS
 
 
@@ -35,7 +43,7 @@ class Reports:
         self._said.append(Done(_name(message)))
 
     def refuse(self, message: HostMessage, reason: Refusal, *, joint: int | None = None) -> None:
-        index = message.index if isinstance(message, Segment) else None
+        index = message.index if isinstance(message, Segment | CartesianSegment) else None
         index = None if index == 0xFFFF else index  # which the wire has no number for
         self._said.append(Refused(_name(message), reason, joint=joint, index=index))
 

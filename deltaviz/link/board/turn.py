@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from deltaviz.link.board.queue import SegmentQueue
-from deltaviz.link.messages import Arm, BoardState, Refusal, Segment
+from deltaviz.link.messages import Arm, BoardState, CartesianSegment, Refusal, Segment
 from deltaviz.link.rules import (
     AHEAD_MS,
     LATE_MS,
@@ -44,7 +44,7 @@ def arm_refusal(
 
 
 def segment_refusal(
-    segment: Segment, *, state: BoardState, epoch: int, queue: SegmentQueue
+    segment: Segment | CartesianSegment, *, state: BoardState, epoch: int, queue: SegmentQueue
 ) -> Refusal | None:
     """Why a segment is passed over, without harm to what runs."""
     if state is not BoardState.ARMED:
@@ -59,7 +59,11 @@ def segment_refusal(
 
 
 def well_timed(
-    segment: Segment, *, idle_at: int | None, queue: SegmentQueue, ticks_per_ms: int
+    segment: Segment | CartesianSegment,
+    *,
+    idle_at: int | None,
+    queue: SegmentQueue,
+    ticks_per_ms: int,
 ) -> bool:
     """`idle_at` is the present tick when nothing runs and nothing waits, else None."""
     if not SEGMENT_MIN_MS * ticks_per_ms <= segment.duration <= SEGMENT_MAX_MS * ticks_per_ms:

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import inf, nan, radians
+from math import inf, nan
 
 import numpy as np
 import pytest
 
 from deltaviz import load_robot
 from deltaviz.link.board import SimulatedBoard
-from deltaviz.link.board.checks import Checks, Objection
-from deltaviz.link.board.kinematics import RotaryDeltaForward
+from deltaviz.link.board.checks import Checks
+from deltaviz.link.board.limits import Limits, Objection
 from deltaviz.link.board.parameters import parameters_from
 from deltaviz.link.configuration import configure_from
 from deltaviz.link.messages import (
@@ -107,7 +107,7 @@ def test_without_the_brakeability_check_the_limit_is_broken(
 def test_outside_its_limits_it_accepts_only_the_way_in(make_configure):
     parameters = parameters_from(make_configure(), tick_hz=200_000)
     assert parameters is not None
-    checks = Checks(parameters, tick_hz=200_000)
+    checks = Checks(Limits(parameters), tick_hz=200_000)
 
     def judge(p0, p1):
         return checks.objection(
@@ -118,78 +118,6 @@ def test_outside_its_limits_it_accepts_only_the_way_in(make_configure):
     assert judge(1520, 1521) == Objection(Refusal.JOINT_LIMIT, 0)
     assert judge(-1020, -1019) is None
     assert judge(-1020, -1021) == Objection(Refusal.JOINT_LIMIT, 0)
-
-
-def forward_of(robot):
-    """Its arms as the robot has them, in double precision."""
-    arms = robot.mechanism
-    return RotaryDeltaForward(
-        base_radius=arms.base_radius,
-        effector_radius=arms.effector_radius,
-        upper_arm=arms.upper_arm,
-        forearm=arms.forearm,
-        azimuth=np.radians(arms.azimuths_deg),
-        tool_offset=robot.tool_offset,
-    )
-
-
-@pytest.mark.parametrize("name", PRESETS)
-def test_its_own_forward_kinematics_agrees_with_the_robots(name):
-    robot = load_robot(name)
-    forward = forward_of(robot)
-    rng = np.random.default_rng(3)
-    theta = rng.uniform(radians(-60), radians(110), (400, 3))
-    theirs = robot.forward(theta)
-    round_trip = robot.inverse(theirs)
-    reached = 0
-    for angles, tip, back in zip(theta, theirs, round_trip, strict=True):
-        ours = forward.tip(angles)
-        if ours is not None:
-            reached += 1
-            assert ours == pytest.approx(tuple(tip), abs=1e-9)
-        elif not np.isnan(tip).any():
-            # Refused although the forearms meet: an arm is past the edge of its reach.
-            assert np.isnan(back).any() or np.abs(back - angles).max() > 1e-6
-    assert reached > 300
-
-
-@pytest.mark.parametrize("name", PRESETS)
-def test_what_it_is_told_of_the_arms_gives_the_same_tip_within_a_tenth_of_a_micrometre(name):
-    robot = load_robot(name)
-    parameters = parameters_from(configure_from(robot), tick_hz=200_000)
-    assert parameters is not None
-    told = parameters.forward
-    assert told is not None
-    for theta in np.random.default_rng(4).uniform(radians(-20), radians(60), (100, 3)):
-        assert told.tip(theta) == pytest.approx(forward_of(robot).tip(theta), abs=1e-4)
-
-
-def test_unequal_arms_each_have_their_own_lengths():
-    geometry = {
-        "base_radius": (115.0, 117.0, 113.0),
-        "effector_radius": (75.0, 74.0, 76.0),
-        "upper_arm": (125.0, 126.0, 124.0),
-        "forearm": (338.0, 336.0, 340.0),
-        "azimuth": (0.0, 2.1, 4.2),
-    }
-    forward = RotaryDeltaForward(**geometry, tool_offset=(0.0, 0.0, -10.0))
-    theta = (0.2, 0.5, 0.1)
-    tip = forward.tip(theta)
-    assert tip is not None
-    x, y, z = tip
-    for i in range(3):
-        out = (
-            geometry["base_radius"][i]
-            - geometry["effector_radius"][i]
-            + geometry["upper_arm"][i] * np.cos(theta[i])
-        )
-        elbow = (
-            out * np.cos(geometry["azimuth"][i]),
-            out * np.sin(geometry["azimuth"][i]),
-            -geometry["upper_arm"][i] * np.sin(theta[i]),
-        )
-        length = np.linalg.norm(np.subtract((x, y, z + 10.0), elbow))
-        assert length == pytest.approx(geometry["forearm"][i], abs=1e-9)
 
 
 @pytest.fixture

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from deltaviz.link.board.queue import SegmentQueue
+from deltaviz.link.board.queue import Knot, SegmentQueue
 from deltaviz.link.messages import (
     BoardState,
     Refusal,
@@ -218,7 +218,7 @@ def test_indices_wrap():
     queue = SegmentQueue(places=4)
     queue.open((0,), t_start=0, planned=0)
     queue.next_index = 65535
-    queue.push(Segment(1, 65535, 2000, 2000, 0, (0,), (0,)), planned=0, idle=True)
+    queue.push(Segment(1, 65535, 2000, 2000, 0, (0,), (0,)), Knot((0,), (0,)), planned=0, idle=True)
     assert queue.next_index == 0
 
 
