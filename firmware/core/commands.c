@@ -1,6 +1,8 @@
 #include "commands.h"
 
 #include "checks.h"
+#include "tip.h"
+#include "tip_checks.h"
 #include "turn.h"
 
 #include <math.h>
@@ -172,43 +174,100 @@ static void arm(struct dv_board *board, const struct dv_arm *message)
     }
 }
 
-static struct dv_objection objection(const struct dv_board *board, const struct dv_segment *segment,
-                                     const struct dv_situation *at)
+/* The queue's knot as a segment of the other kind speaks of it. False: not possible there. */
+static bool find_origin(const struct dv_control *control, bool cartesian, struct dv_knot *origin)
+{
+    const struct dv_knot *knot = &control->queue.knot;
+    *origin = *knot;
+    if (cartesian && !control->homed) {
+        return false;
+    }
+    if (cartesian == knot->cartesian) {
+        return true;
+    }
+    return dv_knot_rests(knot)
+        && (cartesian ? dv_tip_knot(&control->parameters, knot, origin)
+                      : dv_joint_knot(&control->parameters, knot, origin));
+}
+
+static struct dv_objection objection(const struct dv_board *board, struct dv_span *span,
+                                     const struct dv_situation *at, struct dv_knot *origin)
 {
     const struct dv_control *control = &board->control;
-    const struct dv_knot *origin = &control->queue.knot;
-    if (segment->joints != at->joints) {
-        return (struct dv_objection){DV_REFUSAL_CONFIGURATION, -1};
+    uint32_t tick_hz = board->hal->tick_hz;
+    if (!dv_is_well_timed(span, at, &control->queue)) {
+        return dv_object(DV_REFUSAL_TIME, -1);
     }
-    if (!dv_is_well_timed(segment, at, &control->queue)) {
-        return (struct dv_objection){DV_REFUSAL_TIME, -1};
+    if (!find_origin(control, span->knot.cartesian, origin)) {
+        return dv_object(DV_REFUSAL_KIND, -1);
     }
-    return dv_check_segment(&control->parameters, board->hal->tick_hz, origin->p, origin->v, segment,
-                            control->homed);
+    if (!span->knot.cartesian) {
+        return dv_check_segment(&control->parameters, tick_hz, origin, &span->knot,
+                                span->duration, control->homed);
+    }
+    for (int i = 3; i < DV_JOINTS_MAX; i++) {
+        span->knot.p[i] = origin->p[i];
+    }
+    return dv_check_tip_segment(&control->parameters, tick_hz, origin, &span->knot,
+                                span->duration);
+}
+
+/* `fits`: it has a number for each joint. */
+static void run_span(struct dv_board *board, struct dv_span *span, bool fits)
+{
+    struct dv_control *control = &board->control;
+    struct dv_situation at = situation(board);
+    struct dv_knot origin;
+    uint8_t refusal = dv_segment_refusal(span, &at, &control->queue);
+    if (refusal != 0) {
+        dv_say_refused(&board->reports, span->type, refusal, -1, span->index);
+        return;
+    }
+    struct dv_objection found = fits ? objection(board, span, &at, &origin)
+                                     : dv_object(DV_REFUSAL_CONFIGURATION, -1);
+    if (found.reason != 0) {
+        dv_say_refused(&board->reports, span->type, found.reason, found.joint, span->index);
+        dv_control_halt(control, DV_CAUSE_BAD_SEGMENT);
+        return;
+    }
+    dv_lease_extend(&control->lease, span->seen, control->now);
+    if (at.idle && !control->lease.alive) {
+        dv_say_refused(&board->reports, span->type, DV_REFUSAL_LEASE, -1, span->index);
+        dv_control_halt(control, DV_CAUSE_LEASE);
+        return;
+    }
+    dv_control_enqueue(control, span, &origin);
 }
 
 static void segment(struct dv_board *board, const struct dv_segment *message)
 {
-    struct dv_control *control = &board->control;
-    struct dv_situation at = situation(board);
-    uint8_t refusal = dv_segment_refusal(message, &at, &control->queue);
-    if (refusal != 0) {
-        dv_say_refused(&board->reports, DV_SEGMENT, refusal, -1, message->index);
-        return;
-    }
-    struct dv_objection found = objection(board, message, &at);
-    if (found.reason != 0) {
-        dv_say_refused(&board->reports, DV_SEGMENT, found.reason, found.joint, message->index);
-        dv_control_halt(control, DV_CAUSE_BAD_SEGMENT);
-        return;
-    }
-    dv_lease_extend(&control->lease, message->seen, control->now);
-    if (at.idle && !control->lease.alive) {
-        dv_say_refused(&board->reports, DV_SEGMENT, DV_REFUSAL_LEASE, -1, message->index);
-        dv_control_halt(control, DV_CAUSE_LEASE);
-        return;
-    }
-    dv_control_enqueue(control, message);
+    struct dv_span span = {
+        .type = DV_SEGMENT,
+        .epoch = message->epoch,
+        .index = message->index,
+        .t_end = message->t_end,
+        .duration = message->duration,
+        .seen = message->seen,
+    };
+    memcpy(span.knot.p, message->p, sizeof span.knot.p);
+    memcpy(span.knot.v, message->v, sizeof span.knot.v);
+    run_span(board, &span, message->joints == board->control.parameters.configure.joints);
+}
+
+static void cartesian_segment(struct dv_board *board, const struct dv_cartesian_segment *message)
+{
+    struct dv_span span = {
+        .type = DV_CARTESIAN_SEGMENT,
+        .epoch = message->epoch,
+        .index = message->index,
+        .t_end = message->t_end,
+        .duration = message->duration,
+        .seen = message->seen,
+        .knot = {.cartesian = true},
+    };
+    memcpy(span.knot.p, message->p, sizeof message->p);
+    memcpy(span.knot.v, message->v, sizeof message->v);
+    run_span(board, &span, true);
 }
 
 static void tool(struct dv_board *board, const struct dv_tool *message)
@@ -231,6 +290,7 @@ union message {
     struct dv_enable enable;
     struct dv_arm arm;
     struct dv_segment segment;
+    struct dv_cartesian_segment cartesian_segment;
     struct dv_keep keep;
     struct dv_tool tool;
 };
@@ -250,6 +310,9 @@ static bool decode(const struct dv_frame *frame, union message *message)
         return dv_decode_arm(frame->payload, frame->size, &message->arm);
     case DV_SEGMENT:
         return dv_decode_segment(frame->payload, frame->size, &message->segment);
+    case DV_CARTESIAN_SEGMENT:
+        return dv_decode_cartesian_segment(frame->payload, frame->size,
+                                           &message->cartesian_segment);
     case DV_KEEP:
         return dv_decode_keep(frame->payload, frame->size, &message->keep);
     case DV_STOP:
@@ -272,9 +335,18 @@ static uint8_t type_refusal(const struct dv_board *board, uint8_t type)
     if (!board->speaks && !stops) {
         return DV_REFUSAL_VERSION;
     }
-    bool needs_robot = type == DV_ENABLE || type == DV_HOME || type == DV_ARM || type == DV_SEGMENT
-        || type == DV_TOOL;
-    return needs_robot && !dv_control_is_configured(&board->control) ? DV_REFUSAL_CONFIGURATION : 0;
+    bool before_robot = stops || type == DV_CONFIGURE || type == DV_KEEP || type == DV_RESET;
+    bool possible = before_robot || dv_control_is_configured(&board->control);
+    return possible ? 0 : DV_REFUSAL_CONFIGURATION;
+}
+
+/* Of a segment; -1 of what is none. */
+static int32_t index_of(const struct dv_frame *frame, const union message *message)
+{
+    if (frame->type == DV_SEGMENT) {
+        return message->segment.index;
+    }
+    return frame->type == DV_CARTESIAN_SEGMENT ? message->cartesian_segment.index : -1;
 }
 
 static void act(struct dv_board *board, const struct dv_frame *frame, const union message *message)
@@ -303,6 +375,9 @@ static void act(struct dv_board *board, const struct dv_frame *frame, const unio
         break;
     case DV_SEGMENT:
         segment(board, &message->segment);
+        break;
+    case DV_CARTESIAN_SEGMENT:
+        cartesian_segment(board, &message->cartesian_segment);
         break;
     case DV_KEEP:
         keep(board, &message->keep);
@@ -333,8 +408,7 @@ void dv_carry_out(struct dv_board *board, const struct dv_frame *frame)
     board->control.now = board->stepper.now;
     uint8_t refusal = type_refusal(board, frame->type);
     if (refusal != 0) {
-        int32_t index = frame->type == DV_SEGMENT ? message.segment.index : -1;
-        dv_say_refused(&board->reports, frame->type, refusal, -1, index);
+        dv_say_refused(&board->reports, frame->type, refusal, -1, index_of(frame, &message));
     } else {
         act(board, frame, &message);
     }

@@ -95,9 +95,10 @@ void dv_control_open_epoch(struct dv_control *control, const struct dv_arm *arm)
     dv_control_change(control, DV_EVENT_ARM);
 }
 
-void dv_control_enqueue(struct dv_control *control, const struct dv_segment *segment)
+void dv_control_enqueue(struct dv_control *control, const struct dv_span *span,
+                        const struct dv_knot *origin)
 {
-    dv_queue_push(&control->queue, segment, control->planned, dv_control_is_idle(control));
+    dv_queue_push(&control->queue, span, origin, control->planned, dv_control_is_idle(control));
 }
 
 /* Stops. */
@@ -265,8 +266,13 @@ static void go_on_homing(struct dv_control *control)
 static void take_up(struct dv_control *control, const struct dv_entry *entry)
 {
     struct dv_drive *drive = &control->drive;
-    dv_path_cubic(&drive->path, control->parameters.configure.joints, &entry->origin, &entry->knot,
-                  entry->duration, control->ticks_per_ms);
+    if (entry->knot.cartesian) {
+        dv_path_tip(&drive->path, &control->parameters, &entry->origin, &entry->knot,
+                    entry->duration, control->ticks_per_ms);
+    } else {
+        dv_path_cubic(&drive->path, control->parameters.configure.joints, &entry->origin,
+                      &entry->knot, entry->duration, control->ticks_per_ms);
+    }
     dv_drive_follow(drive, entry->start);
     dv_queue_pop(&control->queue);
 }
@@ -299,13 +305,14 @@ static bool changes_path(struct dv_control *control, uint32_t until)
 
 static void plan(struct dv_control *control, uint32_t until)
 {
-    notice_rest(control);
-    if (control->seeks) {
-        go_on_homing(control);
-    }
     while (changes_path(control, until)) {
     }
-    dv_drive_plan(&control->drive, until);
+    if (!dv_drive_plan(&control->drive, until)) {
+        /* A tip's path that was judged by looks leads out of reach between them. */
+        dv_queue_clear(&control->queue);
+        brake(control, DV_CAUSE_BAD_SEGMENT);
+        dv_drive_plan(&control->drive, until);
+    }
 }
 
 static void begin_piece(struct dv_control *control)
@@ -328,6 +335,10 @@ void dv_control_piece(struct dv_control *control)
     begin_piece(control);
     look(control);
     judge_lease(control);
+    notice_rest(control);
+    if (control->seeks) {
+        go_on_homing(control);
+    }
     uint32_t until = control->planned + control->ticks_per_ms;
     plan(control, until);
     control->planned = until;

@@ -61,7 +61,8 @@ void dv_control_change(struct dv_control *control, enum dv_event event);
 void dv_control_configure(struct dv_control *control, uint32_t hash); /* `parameters` are new */
 void dv_control_begin_homing(struct dv_control *control);
 void dv_control_open_epoch(struct dv_control *control, const struct dv_arm *arm);
-void dv_control_enqueue(struct dv_control *control, const struct dv_segment *segment);
+void dv_control_enqueue(struct dv_control *control, const struct dv_span *span,
+                        const struct dv_knot *origin);
 void dv_control_use_tool(struct dv_control *control, const struct dv_tool *tool);
 
 /* Ends what the host had begun: by the brake if it moves. Without effect at rest. */

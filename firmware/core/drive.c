@@ -22,6 +22,14 @@ static uint32_t inverted_pins(const struct dv_configure *configure)
     return pins;
 }
 
+/* The plan ends at `positions`. */
+static void take(struct dv_drive *drive, const int64_t *positions)
+{
+    for (uint32_t i = 0; i < drive->stepper->joints; i++) {
+        drive->planned[i] = positions[i];
+    }
+}
+
 /* In this piece and the next it stands at `positions`. */
 static void stand_at(struct dv_drive *drive, const int64_t *positions)
 {
@@ -98,15 +106,22 @@ void dv_drive_brake(struct dv_drive *drive, uint32_t tick)
     if (!dv_drive_follows(drive)) {
         return;
     }
-    dv_path_positions(&drive->path, tick - drive->start, positions);
-    dv_path_velocities(&drive->path, tick - drive->start, velocities);
+    uint32_t at = dv_since(tick, drive->start) > 0 ? tick - drive->start : 0;
+    if (!dv_path_positions(&drive->path, at, positions)
+        || !dv_path_velocities(&drive->path, at, velocities)) {
+        drive->path.kind = DV_PATH_NONE;
+        return;
+    }
     dv_brake(&drive->path, drive->parameters, positions, velocities, drive->ticks_per_ms);
-    dv_drive_follow(drive, tick);
+    dv_drive_follow(drive, drive->start + at);
 }
 
 void dv_drive_rest(struct dv_drive *drive)
 {
-    dv_path_positions(&drive->path, drive->path.ticks, drive->planned);
+    int64_t positions[DV_JOINTS_MAX];
+    if (dv_path_positions(&drive->path, drive->path.ticks, positions)) {
+        take(drive, positions);
+    }
     drive->path.kind = DV_PATH_NONE;
 }
 
@@ -118,11 +133,14 @@ void dv_drive_begin_piece(struct dv_drive *drive)
     drive->next_moves = false;
 }
 
-void dv_drive_plan(struct dv_drive *drive, uint32_t tick)
+bool dv_drive_plan(struct dv_drive *drive, uint32_t tick)
 {
-    int64_t increments[DV_JOINTS_MAX] = {0};
+    int64_t positions[DV_JOINTS_MAX], increments[DV_JOINTS_MAX] = {0};
     if (dv_drive_follows(drive)) {
-        dv_path_positions(&drive->path, tick - drive->start, drive->planned);
+        if (!dv_path_positions(&drive->path, tick - drive->start, positions)) {
+            return false;
+        }
+        take(drive, positions);
     }
     for (uint32_t i = 0; i < drive->stepper->joints; i++) {
         int64_t way = drive->planned[i] - drive->target[i];
@@ -132,4 +150,5 @@ void dv_drive_plan(struct dv_drive *drive, uint32_t tick)
     drive->hal->hold_steps(drive->hal->context);
     dv_stepper_plan(drive->stepper, drive->planned, increments);
     drive->hal->release_steps(drive->hal->context);
+    return true;
 }

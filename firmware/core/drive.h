@@ -49,7 +49,9 @@ void dv_drive_cut(struct dv_drive *drive);
 /* `drive->path` was just made: from tick `start` on, not before where the plan ends. */
 void dv_drive_follow(struct dv_drive *drive, uint32_t start);
 
-/* Leaves the path along its tangent at `tick`, where the plan ends or the path does. */
+/* Leaves the path along its tangent at `tick`: where the plan ends, or the path does. One that has
+ * not begun by then is left where it begins.
+ */
 void dv_drive_brake(struct dv_drive *drive, uint32_t tick);
 
 /* The path has ended, and it ended at rest. */
@@ -58,7 +60,7 @@ void dv_drive_rest(struct dv_drive *drive);
 /* The stepper has taken over the planned piece. */
 void dv_drive_begin_piece(struct dv_drive *drive);
 
-/* Until `tick`, one piece beyond the plan. */
-void dv_drive_plan(struct dv_drive *drive, uint32_t tick);
+/* Until `tick`, one piece beyond the plan. False: the path leads nowhere there. */
+bool dv_drive_plan(struct dv_drive *drive, uint32_t tick);
 
 #endif

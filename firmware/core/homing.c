@@ -203,7 +203,7 @@ void dv_homing_way_to_ready(const struct dv_homing *homing, struct dv_path *path
                             const int64_t *positions)
 {
     const struct dv_configure *configure = &homing->parameters->configure;
-    struct dv_knot start = {{0}, {0}}, ready = {{0}, {0}};
+    struct dv_knot start = {.cartesian = false}, ready = {.cartesian = false};
     for (int i = 0; i < configure->joints; i++) {
         start.p[i] = dv_nearest(positions[i]) * 1024;
         ready.p[i] = configure->ready[i] * 1024;

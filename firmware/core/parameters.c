@@ -68,22 +68,33 @@ static bool range_makes_sense(const float range[2])
     return range[0] < range[1]; /* either may be infinite, neither may be no number */
 }
 
+static int arms_of(const struct dv_configure *c)
+{
+    switch (c->kind) {
+    case DV_KIND_ROTARY_DELTA:
+        return 3;
+    case DV_KIND_FIVE_BAR:
+        return 2;
+    default:
+        return 0;
+    }
+}
+
 static bool geometry_makes_sense(const struct dv_configure *c)
 {
-    if (c->kind == DV_KIND_JOINTS_ONLY) {
-        return true;
-    }
-    if (c->kind != DV_KIND_ROTARY_DELTA || c->joints != DV_ARMS) {
+    int arms = arms_of(c);
+    bool turns_tool = c->kind == DV_KIND_ROTARY_DELTA && c->joints == arms + 1;
+    if (c->kind != DV_KIND_JOINTS_ONLY && c->joints != arms && !turns_tool) {
         return false;
     }
-    for (int i = 0; i < DV_ARMS; i++) {
+    for (int i = 0; i < arms; i++) {
         if (!(c->upper_arm[i] > 0.0f && c->forearm[i] > 0.0f)) {
             return false;
         }
     }
-    return finite_numbers(c->base_radius, DV_ARMS) && finite_numbers(c->effector_radius, DV_ARMS)
-        && finite_numbers(c->upper_arm, DV_ARMS) && finite_numbers(c->forearm, DV_ARMS)
-        && finite_numbers(c->azimuth, DV_ARMS);
+    return finite_numbers(c->base_radius, arms) && finite_numbers(c->effector_radius, arms)
+        && finite_numbers(c->upper_arm, arms) && finite_numbers(c->forearm, arms)
+        && finite_numbers(c->azimuth, arms);
 }
 
 static bool makes_sense(const struct dv_configure *c, uint32_t tick_hz)
@@ -115,12 +126,19 @@ static void take_limits(struct dv_parameters *parameters)
     }
 }
 
+/* The sine of the angle from one arm's azimuth to another's. */
+static float turned(const struct dv_limb *one, const struct dv_limb *other)
+{
+    return one->cos_azimuth * other->sin_azimuth - one->sin_azimuth * other->cos_azimuth;
+}
+
 static void take_geometry(struct dv_parameters *parameters)
 {
     const struct dv_configure *c = &parameters->configure;
-    parameters->arms = DV_ARMS;
-    for (int i = 0; i < DV_ARMS; i++) {
-        parameters->arm[i] = (struct dv_delta_arm){
+    struct dv_limb *limb = parameters->limb;
+    parameters->arms = (uint8_t)arms_of(c);
+    for (int i = 0; i < parameters->arms; i++) {
+        limb[i] = (struct dv_limb){
             .offset = c->base_radius[i] - c->effector_radius[i],
             .upper_arm = c->upper_arm[i],
             .forearm = c->forearm[i],
@@ -128,19 +146,22 @@ static void take_geometry(struct dv_parameters *parameters)
             .sin_azimuth = sinf(c->azimuth[i]),
         };
     }
-    const struct dv_delta_arm *a = &parameters->arm[0], *b = &parameters->arm[1],
-                              *d = &parameters->arm[2];
-    float turned = (a->cos_azimuth * b->sin_azimuth - a->sin_azimuth * b->cos_azimuth)
-        + (b->cos_azimuth * d->sin_azimuth - b->sin_azimuth * d->cos_azimuth)
-        + (d->cos_azimuth * a->sin_azimuth - d->sin_azimuth * a->cos_azimuth);
-    parameters->handedness = copysignf(1.0f, turned);
+    if (c->kind == DV_KIND_FIVE_BAR) {
+        limb[0].cos_azimuth = -1.0f; /* to the left */
+        limb[1].cos_azimuth = 1.0f;
+        limb[0].sin_azimuth = limb[1].sin_azimuth = 0.0f;
+    } else {
+        float around = turned(&limb[0], &limb[1]) + turned(&limb[1], &limb[2])
+            + turned(&limb[2], &limb[0]);
+        parameters->handedness = copysignf(1.0f, around);
+    }
 }
 
 static bool ready_pose_has_a_tip(const struct dv_parameters *parameters)
 {
     const struct dv_configure *c = &parameters->configure;
-    float theta[DV_ARMS], tip[3];
-    for (int i = 0; i < DV_ARMS; i++) {
+    float theta[DV_ARMS_MAX], tip[3];
+    for (int i = 0; i < parameters->arms; i++) {
         theta[i] = (float)c->ready[i] / c->microsteps_per_rad[i];
     }
     return dv_forward(parameters, theta, tip);

@@ -7,12 +7,13 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#define DV_ARMS 3 /* of a rotary delta */
+#define DV_ARMS_MAX 3
 
 #define DV_TICK_HZ_MIN 1000u
 #define DV_TICK_HZ_MAX 500000u /* up to here the arithmetic of paths and cubics fits 64 bits */
 
-struct dv_delta_arm {
+/* One arm (dv_arm is a message). */
+struct dv_limb {
     float offset; /* base radius minus effector radius, mm */
     float upper_arm; /* mm */
     float forearm; /* mm */
@@ -26,9 +27,9 @@ struct dv_parameters {
     float acceleration[DV_JOINTS_MAX]; /* microsteps/s² */
     float velocity[DV_JOINTS_MAX]; /* microsteps/s */
     float unhomed_velocity[DV_JOINTS_MAX]; /* microsteps/s, at most `velocity` */
-    uint8_t arms; /* DV_ARMS, or 0: guarded by its joints alone */
-    float handedness; /* +1: the arms stand counter-clockwise in their order, else -1 */
-    struct dv_delta_arm arm[DV_ARMS];
+    uint8_t arms; /* of the first joints; 0: guarded by its joints alone */
+    float handedness; /* of a rotary delta, +1: counter-clockwise in their order, else -1 */
+    struct dv_limb limb[DV_ARMS_MAX];
 };
 
 /* False for a configuration that makes no sense (messages.py says which do not), and for a tick that

@@ -8,20 +8,24 @@
 #define DV_PATHS_H
 
 #include "messages.h"
+#include "parameters.h"
+#include "real_cubic.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Where segments meet, in units of the messages. */
+/* Where segments meet, in units of the messages: of the joints, or Cartesian (tip.h). */
 struct dv_knot {
     int32_t p[DV_JOINTS_MAX]; /* 2^-10 microsteps */
     int32_t v[DV_JOINTS_MAX]; /* 2^-16 microsteps/ms */
+    bool cartesian;
 };
 
 enum dv_path_kind {
     DV_PATH_NONE, /* nothing is followed */
     DV_PATH_CUBIC,
     DV_PATH_RAMP,
+    DV_PATH_TIP,
 };
 
 /* The cubic between two knots, in Hermite form over u = tick / ticks (Q30):
@@ -40,6 +44,18 @@ struct dv_ramp {
     int32_t v_start, v_end;
 };
 
+/* The cubic between two Cartesian knots, in single precision: mm, s. */
+struct dv_tip_motion {
+    float start[3];
+    struct dv_real_cubic axis[3];
+};
+
+struct dv_tip_path {
+    const struct dv_parameters *parameters;
+    struct dv_tip_motion motion;
+    int64_t held[DV_JOINTS_MAX]; /* Q32: where the joints beyond the arms stand */
+};
+
 struct dv_path {
     uint8_t kind; /* enum dv_path_kind */
     uint8_t joints;
@@ -49,7 +65,8 @@ struct dv_path {
     union {
         struct dv_cubic cubic[DV_JOINTS_MAX];
         struct dv_ramp ramp[DV_JOINTS_MAX];
-    } joint;
+        struct dv_tip_path tip;
+    } by;
 };
 
 void dv_path_cubic(struct dv_path *path, uint8_t joints, const struct dv_knot *start,
@@ -59,8 +76,14 @@ void dv_path_ramp(struct dv_path *path, uint8_t joints, const int64_t *start,
                   const int32_t *v_start, const int32_t *v_end, uint32_t ticks,
                   uint32_t ticks_per_ms);
 
-void dv_path_positions(const struct dv_path *path, uint32_t tick, int64_t *positions);
+/* Between Cartesian knots. */
+void dv_path_tip(struct dv_path *path, const struct dv_parameters *parameters,
+                 const struct dv_knot *start, const struct dv_knot *end, uint32_t ticks,
+                 uint32_t ticks_per_ms);
 
-void dv_path_velocities(const struct dv_path *path, uint32_t tick, int32_t *velocities);
+/* Where the joints are at a tick of the path. False: they cannot be there. */
+bool dv_path_positions(const struct dv_path *path, uint32_t tick, int64_t *positions);
+
+bool dv_path_velocities(const struct dv_path *path, uint32_t tick, int32_t *velocities);
 
 #endif

@@ -18,28 +18,29 @@ void dv_queue_open(struct dv_queue *queue, uint8_t joints, const int32_t *counts
     }
 }
 
-static uint32_t start_from_rest(const struct dv_queue *queue, const struct dv_segment *segment,
+static uint32_t start_from_rest(const struct dv_queue *queue, const struct dv_span *span,
                                 uint32_t planned, bool idle)
 {
-    uint32_t nominal = segment->t_end - segment->duration;
+    uint32_t nominal = span->t_end - span->duration;
     uint32_t earliest = idle || dv_since(planned, queue->end) > 0 ? planned : queue->end;
     return dv_since(nominal, earliest) > 0 ? nominal : earliest;
 }
 
-void dv_queue_push(struct dv_queue *queue, const struct dv_segment *segment, uint32_t planned,
-                   bool idle)
+void dv_queue_push(struct dv_queue *queue, const struct dv_span *span,
+                   const struct dv_knot *origin, uint32_t planned, bool idle)
 {
     struct dv_entry *entry = &queue->entries[(queue->first + queue->count) % DV_QUEUE_PLACES];
-    bool from_rest = dv_knot_rests(&queue->knot);
-    entry->origin = queue->knot;
-    memcpy(entry->knot.p, segment->p, sizeof entry->knot.p);
-    memcpy(entry->knot.v, segment->v, sizeof entry->knot.v);
-    entry->start = from_rest ? start_from_rest(queue, segment, planned, idle) : queue->end;
-    entry->duration = segment->duration;
+    bool from_rest = dv_knot_rests(origin);
+    *entry = (struct dv_entry){
+        .origin = *origin,
+        .knot = span->knot,
+        .start = from_rest ? start_from_rest(queue, span, planned, idle) : queue->end,
+        .duration = span->duration,
+    };
     queue->count++;
-    queue->end = entry->start + segment->duration;
-    queue->nominal_end = segment->t_end;
-    queue->next_index = (uint16_t)(segment->index + 1);
+    queue->end = entry->start + span->duration;
+    queue->nominal_end = span->t_end;
+    queue->next_index = (uint16_t)(span->index + 1);
     queue->knot = entry->knot;
 }
 

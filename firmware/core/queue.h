@@ -8,6 +8,14 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/* A segment of either kind. */
+struct dv_span {
+    uint8_t type; /* enum dv_type */
+    uint16_t epoch, index;
+    uint32_t t_end, duration, seen; /* ticks */
+    struct dv_knot knot; /* where it leads */
+};
+
 struct dv_entry {
     struct dv_knot origin, knot; /* where it begins and where it leads */
     uint32_t start;              /* board tick */
@@ -28,11 +36,12 @@ struct dv_queue {
 void dv_queue_open(struct dv_queue *queue, uint8_t joints, const int32_t *counts,
                    uint32_t t_start, uint32_t planned);
 
-/* Only while it has room. Nothing begins before `planned`, the tick until which motion is planned.
- * `idle`: nothing moves and nothing waits to, maybe since long ago.
+/* Only while it has room. `origin` is the queue's knot as the span speaks of it. Nothing begins before
+ * `planned`, the tick until which motion is planned. `idle`: nothing moves and nothing waits to,
+ * maybe since long ago.
  */
-void dv_queue_push(struct dv_queue *queue, const struct dv_segment *segment, uint32_t planned,
-                   bool idle);
+void dv_queue_push(struct dv_queue *queue, const struct dv_span *span,
+                   const struct dv_knot *origin, uint32_t planned, bool idle);
 
 /* NULL when it is empty. Valid until the next push. */
 const struct dv_entry *dv_queue_head(const struct dv_queue *queue);

@@ -47,27 +47,27 @@ uint8_t dv_arm_refusal(const struct dv_arm *arm, const struct dv_situation *at)
     return is_near(arm->t_start, at) ? 0 : DV_REFUSAL_TIME;
 }
 
-uint8_t dv_segment_refusal(const struct dv_segment *segment, const struct dv_situation *at,
+uint8_t dv_segment_refusal(const struct dv_span *span, const struct dv_situation *at,
                            const struct dv_queue *queue)
 {
     if (at->state != DV_STATE_ARMED) {
         return DV_REFUSAL_STATE;
     }
-    if (segment->epoch != at->epoch) {
+    if (span->epoch != at->epoch) {
         return DV_REFUSAL_EPOCH;
     }
-    if (segment->index != queue->next_index) {
+    if (span->index != queue->next_index) {
         return DV_REFUSAL_INDEX;
     }
     return queue->count == DV_QUEUE_PLACES ? DV_REFUSAL_QUEUE_FULL : 0;
 }
 
-bool dv_is_well_timed(const struct dv_segment *segment, const struct dv_situation *at,
+bool dv_is_well_timed(const struct dv_span *span, const struct dv_situation *at,
                       const struct dv_queue *queue)
 {
-    uint32_t start = segment->t_end - segment->duration;
-    if (segment->duration < ticks(at, DV_SEGMENT_MIN_MS)
-        || segment->duration > ticks(at, DV_SEGMENT_MAX_MS)) {
+    uint32_t start = span->t_end - span->duration;
+    if (span->duration < ticks(at, DV_SEGMENT_MIN_MS)
+        || span->duration > ticks(at, DV_SEGMENT_MAX_MS)) {
         return false;
     }
     if (at->idle) {

@@ -31,10 +31,10 @@ bool dv_within(const int32_t *counts, uint8_t joints, int32_t most);
 uint8_t dv_arm_refusal(const struct dv_arm *arm, const struct dv_situation *at);
 
 /* Why a segment is passed over, without harm to what runs. */
-uint8_t dv_segment_refusal(const struct dv_segment *segment, const struct dv_situation *at,
+uint8_t dv_segment_refusal(const struct dv_span *span, const struct dv_situation *at,
                            const struct dv_queue *queue);
 
-bool dv_is_well_timed(const struct dv_segment *segment, const struct dv_situation *at,
+bool dv_is_well_timed(const struct dv_span *span, const struct dv_situation *at,
                       const struct dv_queue *queue);
 
 #endif

@@ -11,12 +11,14 @@ from math import inf, radians
 from pathlib import Path
 from typing import Any
 
-from deltaviz.link.messages import Configure, Options, RobotKind, Segment
+from deltaviz.link.messages import Configure, Options, RobotKind
 from deltaviz.link.wire.description import MessageDescription, load_description
 from deltaviz.mechanism import RotaryDelta
 
 CORE = Path(__file__).parents[2] / "firmware" / "core"
-SOURCES = [CORE / f"{name}.c" for name in ("kinematics", "parameters", "joint_cubic", "checks")]
+NAMES = ("kinematics", "rotary_delta", "five_bar", "parameters", "real_cubic", "limits", "checks")
+NAMES += ("tip", "tip_checks")
+SOURCES = [CORE / f"{name}.c" for name in NAMES]
 STRICT_C = [
     *("-std=c11", "-Wall", "-Wextra", "-pedantic", "-Wconversion", "-Wdouble-promotion"),
     *("-Wshadow", "-Werror", f"-I{CORE}", f"-I{CORE.parent / 'hal'}"),
@@ -45,7 +47,16 @@ def _structure(message: MessageDescription) -> type[c.Structure]:
 
 _messages = {message.name: message for message in load_description().message}
 CConfigure = _structure(_messages["Configure"])
-CSegment = _structure(_messages["Segment"])
+
+
+class CKnot(c.Structure):
+    """`struct dv_knot`."""
+
+    _fields_ = [
+        ("p", c.c_int32 * _JOINTS_MAX),
+        ("v", c.c_int32 * _JOINTS_MAX),
+        ("cartesian", c.c_bool),
+    ]
 
 
 class CCase(c.Structure):
@@ -54,14 +65,14 @@ class CCase(c.Structure):
     _fields_ = [
         ("configure", CConfigure),
         ("tick_hz", c.c_uint32),
-        ("p0", c.c_int32 * _JOINTS_MAX),
-        ("v0", c.c_int32 * _JOINTS_MAX),
-        ("segment", CSegment),
+        ("start", CKnot),
+        ("end", CKnot),
+        ("ticks", c.c_uint32),
         ("pose", c.c_float * 3),
     ]
 
 
-class CArm(c.Structure):
+class CLimb(c.Structure):
     _fields_ = [
         (name, c.c_float)
         for name in ("offset", "upper_arm", "forearm", "cos_azimuth", "sin_azimuth")
@@ -79,7 +90,7 @@ class CParameters(c.Structure):
         ("unhomed_velocity", c.c_float * _JOINTS_MAX),
         ("arms", c.c_uint8),
         ("handedness", c.c_float),
-        ("arm", CArm * 3),
+        ("limb", CLimb * 3),
     ]
 
 
@@ -87,7 +98,7 @@ class CObjection(c.Structure):
     _fields_ = [("reason", c.c_uint8), ("joint", c.c_int8)]
 
 
-class CJointCubic(c.Structure):
+class CRealCubic(c.Structure):
     _fields_ = [(name, c.c_float) for name in ("distance", "v0", "v1", "a0", "a1", "seconds")]
 
 
@@ -107,17 +118,19 @@ def _library() -> c.CDLL:
     for name in ("dv_parameters_from", "dv_forward", "dv_inverse"):
         getattr(library, name).restype = c.c_bool
     library.dv_check_segment.restype = CObjection
-    library.dv_joint_cubic.restype = CJointCubic
-    for name in ("dv_joint_cubic_top_speed", "dv_joint_cubic_position"):
+    library.dv_joint_cubic.restype = CRealCubic
+    library.dv_tip_cubic.restype = CRealCubic
+    library.dv_check_tip_segment.restype = CObjection
+    for name in ("dv_real_cubic_top_speed", "dv_real_cubic_position"):
         getattr(library, name).restype = c.c_float
     return library
 
 
-def c_message(kind: type[c.Structure], message: Configure | Segment, joints: int) -> Any:
-    """The C form of a message."""
-    values: Any = kind()
-    for name, *_ in kind._fields_:
-        value = joints if name == "joints" else getattr(message, name)
+def c_configure(configure: Configure) -> Any:
+    """The C form of the message."""
+    values: Any = CConfigure()
+    for name, *_ in CConfigure._fields_:
+        value = len(configure.ready) if name == "joints" else getattr(configure, name)
         if isinstance(value, tuple):
             getattr(values, name)[: len(value)] = value
         else:
@@ -125,10 +138,15 @@ def c_message(kind: type[c.Structure], message: Configure | Segment, joints: int
     return values
 
 
+def c_knot(p: Sequence[int], v: Sequence[int], *, cartesian: bool = False) -> CKnot:
+    numbers = c.c_int32 * _JOINTS_MAX
+    return CKnot(numbers(*p), numbers(*v), cartesian)
+
+
 def parameters_from(configure: Configure, *, tick_hz: int) -> CParameters | None:
     """What C makes of a Configure."""
     parameters = CParameters()
-    given = c_message(CConfigure, configure, len(configure.microsteps_per_rad))
+    given = c_configure(configure)
     if not _library().dv_parameters_from(c.byref(parameters), c.byref(given), c.c_uint32(tick_hz)):
         return None
     return parameters
@@ -150,20 +168,38 @@ def check_segment(
     parameters: CParameters,
     *,
     tick_hz: int,
-    p0: Sequence[int],
-    v0: Sequence[int],
-    segment: Segment,
+    start: tuple[Sequence[int], Sequence[int]],
+    end: tuple[Sequence[int], Sequence[int]],
+    ticks: int,
     homed: bool,
 ) -> tuple[int, int]:
     """(reason, joint): (0, -1) for a segment without fault."""
-    numbers = c.c_int32 * _JOINTS_MAX
     found = _library().dv_check_segment(
         c.byref(parameters),
         c.c_uint32(tick_hz),
-        numbers(*p0),
-        numbers(*v0),
-        c.byref(c_message(CSegment, segment, len(p0))),
+        c.byref(c_knot(*start)),
+        c.byref(c_knot(*end)),
+        c.c_uint32(ticks),
         c.c_bool(homed),
+    )
+    return found.reason, found.joint
+
+
+def check_tip_segment(
+    parameters: CParameters,
+    *,
+    tick_hz: int,
+    start: tuple[Sequence[int], Sequence[int]],
+    end: tuple[Sequence[int], Sequence[int]],
+    ticks: int,
+) -> tuple[int, int]:
+    """The same for Cartesian knots."""
+    found = _library().dv_check_tip_segment(
+        c.byref(parameters),
+        c.c_uint32(tick_hz),
+        c.byref(c_knot(*start, cartesian=True)),
+        c.byref(c_knot(*end, cartesian=True)),
+        c.c_uint32(ticks),
     )
     return found.reason, found.joint
 
@@ -202,14 +238,14 @@ def delta_configure(mechanism: RotaryDelta, **changes: Any) -> Configure:
     return Configure(**(values | changes))
 
 
-def joint_cubic(p0: int, p1: int, v0: int, v1: int, *, ticks: int, tick_hz: int) -> CJointCubic:
+def joint_cubic(p0: int, p1: int, v0: int, v1: int, *, ticks: int, tick_hz: int) -> CRealCubic:
     knots = map(c.c_int32, (p0, p1, v0, v1))
     return _library().dv_joint_cubic(*knots, c.c_uint32(ticks), c.c_uint32(tick_hz))
 
 
-def joint_cubic_top_speed(cubic: CJointCubic) -> float:
-    return _library().dv_joint_cubic_top_speed(c.byref(cubic))
+def top_speed(cubic: CRealCubic) -> float:
+    return _library().dv_real_cubic_top_speed(c.byref(cubic))
 
 
-def joint_cubic_position(cubic: CJointCubic, part: float) -> float:
-    return _library().dv_joint_cubic_position(c.byref(cubic), c.c_float(part))
+def position(cubic: CRealCubic, part: float) -> float:
+    return _library().dv_real_cubic_position(c.byref(cubic), c.c_float(part))

@@ -4,15 +4,15 @@
 #include "checks.h"
 #include "kinematics.h"
 #include "rules.h"
+#include "tip_checks.h"
 
 #include <stdio.h>
 
 struct test_case {
     struct dv_configure configure;
     uint32_t tick_hz;
-    int32_t p0[DV_JOINTS_MAX];
-    int32_t v0[DV_JOINTS_MAX];
-    struct dv_segment segment;
+    struct dv_knot start, end;
+    uint32_t ticks;
     float pose[3];
 };
 
@@ -28,14 +28,17 @@ int main(void)
             continue;
         }
         taken++;
-        uint64_t milliticks = (uint64_t)now.segment.duration * 1000;
+        uint64_t milliticks = (uint64_t)now.ticks * 1000;
         bool lasts = milliticks >= (uint64_t)now.tick_hz * DV_SEGMENT_MIN_MS
             && milliticks <= (uint64_t)now.tick_hz * DV_SEGMENT_MAX_MS;
         dv_forward(&parameters, now.pose, result);
         dv_inverse(&parameters, now.pose, result);
+        if (parameters.arms > 0 && lasts) {
+            dv_check_tip_segment(&parameters, now.tick_hz, &now.start, &now.end, now.ticks);
+        }
         for (int homed = 0; homed < 2 && lasts; homed++) {
-            struct dv_objection found = dv_check_segment(&parameters, now.tick_hz, now.p0, now.v0,
-                                                         &now.segment, homed == 1);
+            struct dv_objection found = dv_check_segment(&parameters, now.tick_hz, &now.start,
+                                                         &now.end, now.ticks, homed == 1);
             accepted += found.reason == 0;
         }
     }

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from deltaviz import load_robot
 from deltaviz.link.board.parameters import parameters_from
 from deltaviz.link.configuration import configure_from
-from deltaviz.link.messages import Configure, Segment
+from deltaviz.link.messages import Configure
 from tests.firmware import c_library
 from tests.firmware.two_judges import TICK_HZ, gantry
 
@@ -137,7 +137,7 @@ def wild(chance: random.Random) -> c_library.CCase:
     joints = chance.choice([1, 2, 3, 3, 3, 4, 4])
     configure = STM32 if joints == 3 else gantry(joints).configure
     case = c_library.CCase()
-    case.configure = c_library.c_message(c_library.CConfigure, configure, joints)
+    case.configure = c_library.c_configure(configure)
     for _ in range(chance.choice([0, 0, 1, 2, 4])):
         name = chance.choice(c_library.CConfigure._fields_)[0]
         if name in ("inverted", "joints"):
@@ -151,11 +151,10 @@ def wild(chance: random.Random) -> c_library.CCase:
         else:
             setattr(case.configure, name, value if isinstance(old, float) else whole)
     case.tick_hz = chance.choice([200_000, 40_000, 1000, 500_000, chance.getrandbits(32)])
-    still = Segment(1, 0, 0, chance.choice([160, 800, 10_000, chance.getrandbits(32)]), 0, (), ())
-    case.segment = c_library.c_message(c_library.CSegment, still, joints)
+    case.ticks = chance.choice([160, 800, 10_000, chance.getrandbits(32)])
     size = chance.choice([1 << 10, 1 << 20, (1 << 31) - 1])
-    for array in (case.p0, case.v0, case.segment.p, case.segment.v):
-        for joint in range(joints):
+    for array in (case.start.p, case.start.v, case.end.p, case.end.v):
+        for joint in range(4):
             array[joint] = chance.randint(-size, size)
     for i in range(3):
         case.pose[i] = chance.choice([nan, inf, 3e38, chance.uniform(-500, 500)])

@@ -21,14 +21,14 @@ from deltaviz.link.board.checks import Checks
 from deltaviz.link.board.limits import Limits, Objection
 from deltaviz.link.board.parameters import Parameters, parameters_from
 from deltaviz.link.configuration import configure_from
-from deltaviz.link.messages import Configure, Options, RobotKind, Segment
+from deltaviz.link.messages import Configure, Options, RobotKind
 from deltaviz.mechanism import RotaryDelta
 from deltaviz.mechanism.stiffness import TYPE_1_RESERVE, TYPE_2_RESERVE
 from tests.firmware import c_library
 
 TICK_HZ = 200_000
 
-# firmware/core/checks.h, of single precision
+# firmware/core/limits.h and checks.h, of single precision
 RELATIVE_ERROR = 2e-6
 POSITION_ERROR = 1 / 16  # microsteps
 TIP_ERROR = 0.01  # mm
@@ -73,15 +73,12 @@ class Both:
         self._loose = Watched(parameters)
 
     def c_answer(self, knots: Knots) -> tuple[int, int]:
-        segment = Segment(
-            epoch=1, index=0, t_end=0, duration=knots.ticks, seen=0, p=knots.p1, v=knots.v1
-        )
         return c_library.check_segment(
             self._in_c,
             tick_hz=TICK_HZ,
-            p0=knots.p0,
-            v0=knots.v0,
-            segment=segment,
+            start=(knots.p0, knots.v0),
+            end=(knots.p1, knots.v1),
+            ticks=knots.ticks,
             homed=knots.homed,
         )
 

@@ -16,10 +16,12 @@ from deltaviz.link.messages import (
     Arm,
     BoardMessage,
     BoardState,
+    CartesianSegment,
     Configure,
     Enable,
     Fault,
     Hello,
+    Home,
     HostMessage,
     Keep,
     Options,
@@ -222,6 +224,13 @@ class Bench:
                 return heard
         raise AssertionError("it never came to rest")
 
+    def home(self) -> list[BoardMessage]:
+        """Until it stands at the ready pose, or has failed."""
+        self.send(Keep(self.board.now))
+        heard = self.send(Home())
+        assert self.board.state is BoardState.HOMING
+        return heard + self.run_to_rest()
+
     def arm(self, **changes: Any) -> list[BoardMessage]:
         self.epoch = (self.epoch + 1) & 0xFFFF
         self.index = 0
@@ -248,6 +257,27 @@ class Bench:
             "v": tuple(round(x * 65.536) for x in v),
         }
         message = Segment(**(values | changes))
+        self.index = (message.index + 1) & 0xFFFF
+        self.t_end = message.t_end
+        return self.send(message)
+
+    def tip_segment(
+        self, xyz: Sequence[float], v: Sequence[float], *, ms: float = 10, **changes: Any
+    ) -> list[BoardMessage]:
+        """The tip to `xyz` mm at `v` mm/s, right after the segment before."""
+        duration = changes.get("duration", round(ms * MS))
+        x, y, z = (round(value * 256_000) for value in xyz)
+        vx, vy, vz = (round(value * 65_536) for value in v)
+        values: dict[str, Any] = {
+            "epoch": self.epoch,
+            "index": self.index,
+            "t_end": (self.t_end + duration) & MASK,
+            "duration": duration,
+            "seen": self.seen,
+            "p": (x, y, z),
+            "v": (vx, vy, vz),
+        }
+        message = CartesianSegment(**(values | changes))
         self.index = (message.index + 1) & 0xFFFF
         self.t_end = message.t_end
         return self.send(message)

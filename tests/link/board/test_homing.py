@@ -25,13 +25,6 @@ ACCELERATION = 50_000.0
 MICROSTEP = 1 / PER_RAD
 
 
-def home(bench):
-    bench.send(Keep(bench.now))
-    heard = bench.send(Home())
-    assert bench.board.state is BoardState.HOMING
-    return heard + bench.run_to_rest()
-
-
 @pytest.mark.parametrize("together", [True, False], ids=["together", "one after another"])
 @pytest.mark.parametrize("direction", [-1, 1], ids=["up", "down"])
 @pytest.mark.parametrize("joints", [2, 4])
@@ -48,7 +41,7 @@ def test_it_ends_at_the_ready_pose_and_knows_it(
     bench = make_bench(
         configure, homed=False, theta=tuple(0.6 * switch + 0.1 * j for j in range(joints))
     )
-    heard = home(bench)
+    heard = bench.home()
     assert Done("home") in heard
     assert bench.board.state is BoardState.HALTED
     assert bench.board.homed
@@ -90,7 +83,7 @@ def test_one_after_another_moves_one_arm_at_a_time(make_bench, make_configure):
 @pytest.mark.parametrize("where", [-1.1, -1.12, -1.15])
 def test_it_starts_on_a_pressed_switch_too(make_bench, where):
     bench = make_bench(homed=False, theta=(where, 0.2))
-    home(bench)
+    bench.home()
     assert bench.board.homed
     assert bench.board.plant.theta[0] == pytest.approx(0.0, abs=1.5 * MICROSTEP)
 
@@ -98,7 +91,7 @@ def test_it_starts_on_a_pressed_switch_too(make_bench, where):
 def test_a_switch_that_never_comes_is_a_fault(make_bench, accelerations):
     bench = make_bench(homed=False)
     bench.board.plant.force_switch(1, False)
-    home(bench)
+    bench.home()
     assert bench.board.state is BoardState.FAULT
     assert bench.board.fault is Fault.HOMING_NO_SWITCH
     assert bench.last(Stopped).cause is StopCause.HOMING_FAILED
@@ -108,7 +101,7 @@ def test_a_switch_that_never_comes_is_a_fault(make_bench, accelerations):
 def test_a_switch_that_is_stuck_is_a_fault(make_bench):
     bench = make_bench(homed=False)
     bench.board.plant.force_switch(0, True)
-    home(bench)
+    bench.home()
     assert bench.board.state is BoardState.FAULT
     assert bench.board.fault is Fault.HOMING_SWITCH_STUCK
     assert Done("reset") in bench.send(Reset())
@@ -118,15 +111,15 @@ def test_a_switch_that_is_stuck_is_a_fault(make_bench):
 def test_a_stuck_switch_moves_the_arm_no_further_than_twice_the_back_off(make_bench):
     bench = make_bench(homed=False, theta=(0.5, 0.5))
     bench.board.plant.force_switch(0, True)
-    home(bench)
+    bench.home()
     assert abs(bench.board.plant.theta[0] - 0.5) < 2 * 0.05 + 0.05
 
 
 def test_it_may_be_repeated(make_bench):
     bench = make_bench()
-    home(bench)
+    bench.home()
     assert bench.board.homed
-    home(bench)
+    bench.home()
     assert bench.board.counts == (0, 100)
 
 

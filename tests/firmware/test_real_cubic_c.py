@@ -45,10 +45,7 @@ def test_a_cubic_in_single_precision(p0, v, bend, ticks, u):
         (cubic.a1, (2 * v0 + 4 * v1) / h - 6 * d / h**2),
     ):
         assert abs(Fraction(ours) - exact) <= Fraction(RELATIVE_ERROR / 4) * abs(exact)
-    off = abs(
-        Fraction(c_library.joint_cubic_position(cubic, u))
-        - exact_position(knots, ticks, Fraction(u))
-    )
+    off = abs(Fraction(c_library.position(cubic, u)) - exact_position(knots, ticks, Fraction(u)))
     assert off < POSITION_ERROR / 4, f"a position is off by {float(off):.4f} microsteps"
 
 
@@ -58,5 +55,5 @@ def test_top_speed_between_the_knots():
     positions = [float(exact_position(knots, 4000, Fraction(part))) for part in u]
     top = np.gradient(positions, u * 0.020).max()
     cubic = c_library.joint_cubic(*knots, ticks=4000, tick_hz=TICK_HZ)
-    assert c_library.joint_cubic_top_speed(cubic) == pytest.approx(top, rel=1e-3)
+    assert c_library.top_speed(cubic) == pytest.approx(top, rel=1e-3)
     assert top > 1.005 * cubic.v0
