@@ -115,7 +115,7 @@ def _library() -> c.CDLL:
         path = Path(folder) / "core.so"
         compile_c(path, SOURCES, "-shared", "-fPIC")
         library = c.CDLL(str(path))
-    for name in ("dv_parameters_from", "dv_forward", "dv_inverse"):
+    for name in ("dv_parameters_from", "dv_forward", "dv_inverse", "dv_joint_motions"):
         getattr(library, name).restype = c.c_bool
     library.dv_check_segment.restype = CObjection
     library.dv_joint_cubic.restype = CRealCubic
@@ -161,7 +161,23 @@ def forward(parameters: CParameters, theta: Sequence[float]) -> tuple[float, ...
 def inverse(parameters: CParameters, tip: Sequence[float]) -> tuple[float, ...] | None:
     theta = (c.c_float * 3)()
     found = _library().dv_inverse(c.byref(parameters), (c.c_float * 3)(*tip), theta)
-    return tuple(theta) if found else None
+    return tuple(theta[: parameters.arms]) if found else None
+
+
+class CJointMotion(c.Structure):
+    _fields_ = [(name, c.c_float) for name in ("angle", "rate", "acceleration", "gain")]
+
+
+def joint_motions(
+    parameters: CParameters,
+    tip: Sequence[float],
+    velocity: Sequence[float],
+    acceleration: Sequence[float],
+) -> list[CJointMotion] | None:
+    motions = (CJointMotion * 3)()
+    given = [(c.c_float * 3)(*numbers) for numbers in (tip, velocity, acceleration)]
+    found = _library().dv_joint_motions(c.byref(parameters), *given, motions)
+    return list(motions[: parameters.arms]) if found else None
 
 
 def check_segment(

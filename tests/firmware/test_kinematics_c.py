@@ -7,6 +7,7 @@ thousandths of a degree. One microstep of a small machine is 112 of these.
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from math import degrees, radians
 from pathlib import Path
 from types import SimpleNamespace
@@ -14,15 +15,17 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from deltaviz import load_robot
 from deltaviz.link.messages import RobotKind
 from deltaviz.mechanism import RotaryDelta
 from tests.firmware import c_library
+from tests.firmware.two_judges import gantry
 
 REFERENCE = Path(__file__).parents[1] / "data" / "reference"
+FIVE_BARS = sorted(path.stem for path in (REFERENCE / "five_bar").glob("*.json"))
 PRESETS = ["stm32", "trossen", "zheng2023", "deltadraw"]
 TICK_HZ = 200_000
 
@@ -66,6 +69,24 @@ def reference(request):
     return SimpleNamespace(cases=cases, mechanism=mechanism, board=board(mechanism))
 
 
+@pytest.fixture(scope="module", params=FIVE_BARS)
+def five_bar(request):
+    cases = json.loads((REFERENCE / "five_bar" / f"{request.param}.json").read_text())
+    each = {name: (value,) * 2 for name, value in cases["geometry"].items()}
+    configure = replace(
+        gantry(2).configure,
+        kind=RobotKind.FIVE_BAR,
+        base_radius=each["base_half"],
+        effector_radius=each["platform_half"],
+        upper_arm=each["upper_arm"],
+        forearm=each["forearm"],
+        ready=(300, 300),
+    )
+    parameters = c_library.parameters_from(configure, tick_hz=TICK_HZ)
+    assert parameters is not None
+    return SimpleNamespace(cases=cases, board=parameters)
+
+
 @pytest.fixture(scope="module", params=MECHANISMS)
 def robot(request):
     """A mechanism, the board's parameters for it, and random poses that the host would allow."""
@@ -99,6 +120,45 @@ def test_inverse(reference):
         errors.append(apart(theta, np.radians(case["theta_deg"])).max())
     assert len(errors) == 100
     assert max(errors) < INVERSE_MDEG, f"inverse is off by {max(errors):.3f} thousandths of a °"
+
+
+def test_how_joints_move_when_the_tip_does(reference):
+    """A pose near the edge of reach is among them; the others are a hundred times better."""
+    for case in reference.cases["ik"]:
+        moves = case["velocity_case"]
+        found = c_library.joint_motions(reference.board, case["xyz"], moves["v"], moves["a"])
+        assert found is not None
+        inverse = np.linalg.inv(case["J"])
+        sizes = np.linalg.norm(inverse, axis=1)
+        assert [m.gain for m in found] == pytest.approx(sizes, rel=1e-3)
+        for i, motion in enumerate(found):
+            assert motion.rate == pytest.approx(
+                moves["theta_dot"][i], abs=3e-5 * sizes[i] * np.linalg.norm(moves["v"])
+            )
+            assert motion.acceleration == pytest.approx(
+                moves["theta_ddot"][i], abs=2e-4 * (sizes[i] * np.linalg.norm(moves["a"]) + 1)
+            )
+
+
+def test_a_five_bar(five_bar):
+    forward, inverse = [], []
+    for case in five_bar.cases["ik"]:
+        (x, z), theta = case["xy"], np.radians(case["theta_deg"])
+        tip = c_library.forward(five_bar.board, theta)
+        back = c_library.inverse(five_bar.board, (x, 0.0, z))
+        assert tip is not None
+        assert back is not None
+        forward.append(np.abs(np.subtract(tip, (x, 0.0, z))).max() * 1000)
+        inverse.append(apart(back, theta).max())
+        rates = np.linalg.solve(case["J"], (20.0, -30.0))
+        found = c_library.joint_motions(
+            five_bar.board, (x, 0.0, z), (20.0, 0.0, -30.0), (0.0, 0.0, 0.0)
+        )
+        assert found is not None
+        assert [m.rate for m in found] == pytest.approx(rates, abs=1e-5 * np.abs(rates).max())
+    assert len(forward) == 50
+    assert max(forward) < FORWARD_UM * 4, f"forward is off by {max(forward):.3f} um"
+    assert max(inverse) < INVERSE_MDEG, f"inverse is off by {max(inverse):.3f} thousandths of a °"
 
 
 def test_out_of_reach(reference):
@@ -170,6 +230,7 @@ def test_forward_is_none_where_the_inverse_would_not_return(robot):
 
 
 @pytest.mark.parametrize("name", PRESETS)
+@settings(deadline=None)
 @given(data=st.data())
 def test_round_trip(name, data):
     """To the tip that a person sees, within all the robot's limits."""
