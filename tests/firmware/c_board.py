@@ -180,9 +180,14 @@ class CBoard:
         self._to_boundary -= passed
         return passed
 
-    def control(self) -> None:
-        """At a boundary: what the pins did, what the inputs read, and what follows."""
-        self._to_boundary = self._tick_hz // 1000
+    def run_without_control(self, ticks: int) -> None:
+        """On from a boundary, as if the control interrupt were kept waiting."""
+        while ticks > 0:
+            ticks -= self._dv.dv_host_run(self._host, ticks, None)
+
+    def control(self, *, after: int = 0) -> None:
+        """What the pins did, what the inputs read, and what follows; `after` ticks too late."""
+        self._to_boundary = self._tick_hz // 1000 - after
         self._dv.dv_host_set_inputs(self._host, self._levels())
         self._dv.dv_host_control(self._host)
 

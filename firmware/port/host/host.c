@@ -170,11 +170,11 @@ void dv_host_feed(struct dv_host *host, const uint8_t *bytes, size_t size)
 
 size_t dv_host_take(struct dv_host *host, uint8_t *bytes, size_t room)
 {
+    dv_board_poll(&host->board); /* what found no room before */
     size_t size = host->sent_size < room ? host->sent_size : room;
     memcpy(bytes, host->sent, size);
     memmove(host->sent, host->sent + size, host->sent_size - size);
     host->sent_size -= size;
-    dv_board_poll(&host->board); /* what found no room before */
     return size;
 }
 

@@ -195,6 +195,10 @@ class Bench:
     def send(self, message: HostMessage) -> list[BoardMessage]:
         return self._note(self._host.send(message))
 
+    def frame(self, message: HostMessage) -> bytes:
+        """For a test that feeds it by itself."""
+        return self._host.frame(message)
+
     def _note(self, heard: list[BoardMessage]) -> list[BoardMessage]:
         for message in heard:
             if isinstance(message, Telemetry):
