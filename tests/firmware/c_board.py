@@ -107,7 +107,8 @@ class CBoard:
         self._start_homed = start_homed
         self._theta = theta
         self._reader = FrameReader()
-        self._configure: Configure | None = None
+        self._offered: Configure | None = None  # the last one that was fed
+        self._configure: Configure | None = None  # the one that it took
         self._configuration = 0
         self._travelled: list[int] = []
         self._estop = False
@@ -143,14 +144,15 @@ class CBoard:
         except Malformed:
             return
         if isinstance(message, Configure):
-            self._configure = message
+            self._offered = message
 
     def _follow_configuration(self) -> None:
         view = self.look()
         if view.configuration == self._configuration:
             return
         first, self._configuration = self._configuration == 0, view.configuration
-        assert self._configure is not None
+        assert self._offered is not None
+        self._configure = self._offered
         parameters = parameters_from(self._configure, tick_hz=self._tick_hz)
         assert parameters is not None
         homed = first and self._start_homed

@@ -84,6 +84,24 @@ class Both:
 
     def compare(self, knots: Knots) -> tuple[int, int]:
         """The firmware's answer, after a look at whether it is one of those that it may give."""
+        strict, loose = self._ask_both(knots)
+        ours = self.c_answer(knots)
+        if self._near_a_singularity():
+            return ours
+        said = f"firmware {ours}, simulated board {strict}, and with more slack {loose}"
+        if strict == loose:
+            assert ours == strict, said
+        else:
+            assert ours != (0, -1) or loose == (0, -1), said
+        return ours
+
+    def is_clear(self, knots: Knots) -> bool:
+        """Whether the judgement is no matter of what single precision is off by."""
+        strict, loose = self._ask_both(knots)
+        return not self._near_a_singularity() and strict == loose
+
+    def _ask_both(self, knots: Knots) -> tuple[tuple[int, int], tuple[int, int]]:
+        """The simulated board, as it is and with more slack."""
         strict = _ask(self._strict, knots)
         start = [p / 1024 for p in knots.p0]
         low, high = (
@@ -96,16 +114,7 @@ class Both:
             # The slack of accelerations and speeds has a part that does not grow with them.
             patch.setattr(slack, "RELATIVE_SLACK", slack.RELATIVE_SLACK + 3 * RELATIVE_ERROR)
             patch.setattr(slack, "TIP_SLACK", slack.TIP_SLACK + 2 * TIP_ERROR)
-            loose = _ask(self._loose, knots)
-        ours = self.c_answer(knots)
-        if self._near_a_singularity():
-            return ours
-        said = f"firmware {ours}, simulated board {strict}, and with more slack {loose}"
-        if strict == loose:
-            assert ours == strict, said
-        else:
-            assert ours != (0, -1) or loose == (0, -1), said
-        return ours
+            return strict, _ask(self._loose, knots)
 
     def _near_a_singularity(self) -> bool:
         """Whether a pose was looked at where the tip is hardly determined. The host keeps at

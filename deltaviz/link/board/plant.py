@@ -48,9 +48,12 @@ class Plant:
         """The true angles of the arms, rad."""
         return tuple(arm / m for arm, m in zip(self._arms, self._per_rad, strict=True))
 
-    def force_switch(self, joint: int, pressed: bool) -> None:
-        """A broken switch: it reads so whatever the arm does."""
-        self._forced[joint] = pressed
+    def force_switch(self, joint: int, pressed: bool | None) -> None:
+        """A broken switch: it reads so whatever the arm does; None: it is mended."""
+        if pressed is None:
+            self._forced.pop(joint, None)
+        else:
+            self._forced[joint] = pressed
         self.switches = self._read_switches()
 
     def _read_switches(self) -> list[bool]:
