@@ -30,13 +30,17 @@ _JOINTS = load_description().joints_max
 _ROOM = 1 << 14
 
 
-def make(target: str) -> Path:
-    """The library that a target of the firmware's Makefile builds."""
+def run_make(target: str) -> None:
     with (FIRMWARE / "Makefile").open() as lock:  # one at a time
         fcntl.flock(lock, fcntl.LOCK_EX)
         command = ["make", "-s", "-C", str(FIRMWARE), target]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
+
+
+def make(target: str) -> Path:
+    """The library that a target of the firmware's Makefile builds."""
+    run_make(target)
     return FIRMWARE / "build" / target / "libdv.so"
 
 

@@ -22,7 +22,7 @@ from deltaviz.link.board.lease import Lease
 from deltaviz.link.board.paths import Ramp
 from deltaviz.link.messages import BoardState, StopCause
 from tests.firmware.c_board import make
-from tests.firmware.differential import Player, Script, play, scripts
+from tests.firmware.scripts import Player, Script, play, scripts
 
 QUIET = [HealthCheck.function_scoped_fixture, HealthCheck.too_slow, HealthCheck.data_too_large]
 BOUNDED = settings(deadline=None, derandomize=True, database=None, suppress_health_check=QUIET)
