@@ -20,7 +20,16 @@ def machine_states() -> str:
     return f"```mermaid\n{mermaid()}\n```"
 
 
-BLOCKS: dict[str, Callable[[], str]] = {"machine-states": machine_states}
+def board_states() -> str:
+    from deltaviz.link.board.diagram import mermaid
+
+    return f"```mermaid\n{mermaid()}\n```"
+
+
+BLOCKS: dict[str, Callable[[], str]] = {
+    "machine-states": machine_states,
+    "board-states": board_states,
+}
 
 
 def fill(text: str) -> str:
