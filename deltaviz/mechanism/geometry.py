@@ -18,11 +18,16 @@ class GeometryError(ValueError):
 
 
 def per_arm(
-    field: str, value: float | Sequence[float], *, arms: int, above: float | None = None
+    field: str,
+    value: float | Sequence[float],
+    *,
+    arms: int,
+    above: float | None = None,
+    least: float | None = None,
 ) -> tuple[float, ...]:
     """One number per arm from one number for all or one for each.
 
-    Raises GeometryError unless each is finite and, if `above` is given, greater than it.
+    Raises GeometryError unless each is finite, greater than `above` and at least `least`.
     """
     numbers = _numbers(field, value, arms)
     for number in numbers:
@@ -30,6 +35,8 @@ def per_arm(
             raise GeometryError(field, value, "must be finite")
         if above is not None and not number > above:
             raise GeometryError(field, value, f"must be greater than {above:g}")
+        if least is not None and not number >= least:
+            raise GeometryError(field, value, f"must be at least {least:g}")
     return numbers
 
 

@@ -16,7 +16,14 @@ class Mechanism(Protocol):
     """Lengths in mm, angles in rad, float64; all functions broadcast over the leading axes."""
 
     @property
-    def joints(self) -> int: ...
+    def joints(self) -> int:
+        """How many joints move the effector: n."""
+        ...
+
+    @property
+    def axes(self) -> tuple[str, ...]:
+        """The coordinates that it has, in their order: X, Y, Z, or X, Z in a plane."""
+        ...
 
     @property
     def margin_names(self) -> tuple[Margin, ...]: ...

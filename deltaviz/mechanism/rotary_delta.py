@@ -11,7 +11,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from deltaviz.mechanism.arm import EPS, Arm
+from deltaviz.mechanism.arm import EPS, Arm, arm_angles, arm_misses, type_1_margins
 from deltaviz.mechanism.arrays import Array, in_blocks, rows
 from deltaviz.mechanism.bounds import Bounds
 from deltaviz.mechanism.geometry import GeometryError, per_arm
@@ -85,6 +85,10 @@ class RotaryDelta:
     @property
     def joints(self) -> int:
         return 3
+
+    @property
+    def axes(self) -> tuple[str, ...]:
+        return ("X", "Y", "Z")
 
     @property
     def margin_names(self) -> tuple[Margin, ...]:
@@ -183,17 +187,11 @@ class RotaryDelta:
         planes = [arm.plane(points[..., 0], points[..., 1])[1] for arm in self.arms]
         return np.stack(planes, axis=-1)
 
-    @np.errstate(all="ignore")
     def misses(self, xyz: ArrayLike) -> tuple[Array, Array]:
         """(too far, too near), each (..., 3) mm: how far each arm is from reaching; negative
         where it reaches."""
         points = rows(xyz, 3, "xyz")
-        x, y, z = points[..., 0], points[..., 1], points[..., 2]
-        each = [arm.miss(x, y, z) for arm in self.arms]
-        return (
-            np.stack([far for far, _ in each], axis=-1),
-            np.stack([near for _, near in each], axis=-1),
-        )
+        return arm_misses(self.arms, points[..., 0], points[..., 1], points[..., 2])
 
     @np.errstate(all="ignore")
     def margins(self, xyz: ArrayLike, theta: ArrayLike) -> Array:
@@ -208,15 +206,13 @@ class RotaryDelta:
         points, angles = np.broadcast_arrays(points, angles)
         x, y, z = points[..., 0], points[..., 1], points[..., 2]
         forearms = points[..., None, :] - self.elbows(angles)
-        outside = self._jq(forearms, angles) >= 0.0
-        columns: list[Array] = []
-        for i, arm in enumerate(self.arms):
-            value = arm.discriminant(x, y, z)
-            value = np.where(outside[..., i], value, -np.abs(value))
-            columns.append((value - TYPE_1_RESERVE) * self.type_1_scale[i])
-        for held in (-stiffness(unit(forearms)), stiffness(self.couples(points, angles))):
-            columns.append((self.handedness * held - TYPE_2_RESERVE) * self.type_2_scale)
-        return np.stack(columns, axis=-1)
+        jq = self._jq(forearms, angles)
+        type_1 = type_1_margins(self.arms, x, y, z, jq, reserve=TYPE_1_RESERVE)
+        held = np.stack(
+            (-stiffness(unit(forearms)), stiffness(self.couples(points, angles))), axis=-1
+        )
+        type_2 = (self.handedness * held - TYPE_2_RESERVE) * self.type_2_scale
+        return np.concatenate((type_1, type_2), axis=-1)
 
     def kernel(self, bounds: Bounds) -> Kernel:
         """Compiled functions for the tool tip; numba is imported here, and not before."""
@@ -229,12 +225,9 @@ class RotaryDelta:
         """mm of travel per rad of each joint, about: the upper arms."""
         return self.upper_arm
 
-    @cached_property
+    @property
     def type_1_scale(self) -> tuple[float, ...]:
-        """mm per unit of 1 - K²/ρ² at the outer edge of reach: L(L + l)/2l."""
-        return tuple(
-            arm.upper_arm * (arm.upper_arm + arm.forearm) / (2 * arm.forearm) for arm in self.arms
-        )
+        return tuple(arm.type_1_scale for arm in self.arms)
 
     @cached_property
     def type_2_scale(self) -> float:
@@ -246,13 +239,9 @@ class RotaryDelta:
         theta += theta.sum(axis=-1, keepdims=True) * 0.0  # one NaN makes the row NaN
         return theta
 
-    @np.errstate(all="ignore")
     def _angles(self, points: Array, *, clamp: bool) -> Array:
         x, y, z = points[..., 0], points[..., 1], points[..., 2]
-        theta = np.empty(points.shape)
-        for i, arm in enumerate(self.arms):
-            theta[..., i] = arm.angle(x, y, z, clamp=clamp)
-        return theta
+        return arm_angles(self.arms, x, y, z, clamp=clamp)
 
     def _meet(self, elbows: Array) -> Array:
         one, two, three = (

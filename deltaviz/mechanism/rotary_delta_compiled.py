@@ -13,13 +13,11 @@ numbers, see `TYPE_1_SCALE` and so on. The formulas are those of `arm`, `rotary_
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import Any, ParamSpec, TypeVar
 
-import numba
 import numpy as np
 
 from deltaviz.mechanism.arrays import Array
+from deltaviz.mechanism.compiled import compiled
 
 # Columns of the last row of `g`.
 EDGE = 0
@@ -44,31 +42,13 @@ LIMITS = 26
 
 Vector = tuple[float, float, float]
 
-_P = ParamSpec("_P")
-_R = TypeVar("_R")
-_jit: Any = numba.njit  # pyright: ignore  (numba has no types)
 
-
-def _compiled(function: Callable[_P, _R]) -> Callable[_P, _R]:
-    """Compiled at its first call; a division by zero gives inf or NaN, as in numpy.
-
-    The batch functions are cached, in the package's folder or else in the user's; where neither
-    can be written they are compiled anew by each process.
-    """
-    if not function.__name__.startswith("_"):
-        try:
-            return _jit(cache=True, error_model="numpy")(function)
-        except RuntimeError:  # numba found no folder for its cache
-            pass
-    return _jit(error_model="numpy")(function)
-
-
-@_compiled
+@compiled
 def _plane(x: float, y: float, g: Array, i: int) -> tuple[float, float]:
     return x * g[i, 3] + y * g[i, 4] - g[i, 0], y * g[i, 3] - x * g[i, 4]
 
 
-@_compiled
+@compiled
 def _nearest_angle(x: float, y: float, z: float, g: Array, i: int) -> float:
     p, v = _plane(x, y, g, i)
     upper = g[i, 1]
@@ -77,7 +57,7 @@ def _nearest_angle(x: float, y: float, z: float, g: Array, i: int) -> float:
     return math.atan2(-z * k - p * q, p * k - z * q)
 
 
-@_compiled
+@compiled
 def _forearm(
     x: float, y: float, z: float, theta: float, g: Array, i: int
 ) -> tuple[float, float, float, float]:
@@ -88,18 +68,18 @@ def _forearm(
     return sx, sy, sz, -g[i, 1] * ((sx * g[i, 3] + sy * g[i, 4]) * sin + sz * cos)
 
 
-@_compiled
+@compiled
 def _cross(ax: float, ay: float, az: float, bx: float, by: float, bz: float) -> Vector:
     return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
 
 
-@_compiled
+@compiled
 def _elbow(theta: float, g: Array, i: int) -> Vector:
     radius = g[i, 0] + g[i, 1] * math.cos(theta)
     return radius * g[i, 3], radius * g[i, 4], -g[i, 1] * math.sin(theta)
 
 
-@_compiled
+@compiled
 def _meet(t0: float, t1: float, t2: float, g: Array) -> Vector:
     dx, dy, dz = _elbow(t0, g, 0)
     ax, ay, az = _elbow(t1, g, 1)
@@ -130,7 +110,7 @@ def _meet(t0: float, t1: float, t2: float, g: Array) -> Vector:
     return dx + wx - nx * h, dy + wy - ny * h, dz + wz - nz * h
 
 
-@_compiled
+@compiled
 def _stiffness(a: Array, b: Array, c: Array, tiny: float) -> float:
     px, py, pz = _cross(b[0], b[1], b[2], c[0], c[1], c[2])
     qx, qy, qz = _cross(c[0], c[1], c[2], a[0], a[1], a[2])
@@ -139,13 +119,13 @@ def _stiffness(a: Array, b: Array, c: Array, tiny: float) -> float:
     return (a[0] * px + a[1] * py + a[2] * pz) / max(math.sqrt(norm), tiny)
 
 
-@_compiled
+@compiled
 def _unit(x: float, y: float, z: float, tiny: float) -> Vector:
     length = max(math.sqrt(x * x + y * y + z * z), tiny)
     return x / length, y / length, z / length
 
 
-@_compiled
+@compiled
 def _type_1(x: float, y: float, z: float, g: Array, i: int, jq: float) -> float:
     p, v = _plane(x, y, g, i)
     upper = g[i, 1]
@@ -154,7 +134,7 @@ def _type_1(x: float, y: float, z: float, g: Array, i: int, jq: float) -> float:
     return value if jq >= 0.0 else -abs(value)
 
 
-@_compiled
+@compiled
 def _atan2(y: float, x: float) -> float:
     """Without branches or calls, so that the loop over it becomes vector instructions.
 
@@ -180,7 +160,7 @@ def _atan2(y: float, x: float) -> float:
     return -angle if y < 0.0 else angle
 
 
-@_compiled
+@compiled
 def _angles_of_arm(point: Array, angle: Array, size: int, g: Array, i: int) -> None:
     offset, upper, cos, sin = g[i, 0], g[i, 1], g[i, 3], g[i, 4]
     difference = upper * upper - g[i, 2] * g[i, 2]
@@ -199,7 +179,7 @@ def _angles_of_arm(point: Array, angle: Array, size: int, g: Array, i: int) -> N
         angle[k] = math.nan if missed else theta
 
 
-@_compiled
+@compiled
 def inverse(xyz: Array, g: Array) -> Array:
     """Each arm's angle, in blocks that stay in the nearest cache."""
     count = xyz.shape[0]
@@ -221,7 +201,7 @@ def inverse(xyz: Array, g: Array) -> Array:
     return out
 
 
-@_compiled
+@compiled
 def forward(theta: Array, g: Array) -> Array:
     out = np.empty((theta.shape[0], 3))
     for k in range(theta.shape[0]):
@@ -230,7 +210,7 @@ def forward(theta: Array, g: Array) -> Array:
     return out
 
 
-@_compiled
+@compiled
 def joint_velocity(xyz: Array, theta: Array, velocity: Array, g: Array) -> Array:
     out = np.empty((xyz.shape[0], 3))
     for k in range(xyz.shape[0]):
@@ -242,7 +222,7 @@ def joint_velocity(xyz: Array, theta: Array, velocity: Array, g: Array) -> Array
     return out
 
 
-@_compiled
+@compiled
 def tip_velocity(xyz: Array, theta: Array, velocity: Array, g: Array) -> Array:
     out = np.empty((xyz.shape[0], 3))
     for k in range(xyz.shape[0]):
@@ -261,7 +241,7 @@ def tip_velocity(xyz: Array, theta: Array, velocity: Array, g: Array) -> Array:
     return out
 
 
-@_compiled
+@compiled
 def _workspace(row: Array, column: int, tip: Array, limits: Array) -> None:
     for axis in range(3):
         value = tip[(axis + 2) % 3]
@@ -276,7 +256,7 @@ def _workspace(row: Array, column: int, tip: Array, limits: Array) -> None:
         row[column] = (radius * radius - square) / (2.0 * radius) + limits[ROUNDING]
 
 
-@_compiled
+@compiled
 def _margins_of(
     row: Array, tip: Array, theta: Array, g: Array, limits: Array, forearm: Array, couple: Array
 ) -> None:
@@ -306,7 +286,7 @@ def _margins_of(
     _workspace(row, 14, tip, limits)
 
 
-@_compiled
+@compiled
 def margins(xyz: Array, theta: Array, g: Array, limits: Array, columns: int) -> Array:
     out = np.empty((xyz.shape[0], columns))
     forearm = np.empty((3, 3))

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from deltaviz.mechanism import RotaryDelta
+from deltaviz.mechanism import FiveBar, RotaryDelta
 
 REFERENCE = Path(__file__).parents[1] / "data" / "reference"
 
@@ -15,7 +15,7 @@ REFERENCE = Path(__file__).parents[1] / "data" / "reference"
 class Reference:
     """One reference file and the mechanism that it speaks of."""
 
-    mechanism: RotaryDelta
+    mechanism: Any
     cases: dict[str, list[dict[str, Any]]]
 
     def column(self, cases: str, key: str) -> np.ndarray:
@@ -25,10 +25,25 @@ class Reference:
         return np.radians(self.column(cases, "theta_deg"))
 
 
-@pytest.fixture(scope="module", params=sorted(path.stem for path in REFERENCE.glob("*.json")))
+def _names(kind: str) -> list[str]:
+    planar = kind == "five-bar"
+    stems = sorted(path.stem for path in REFERENCE.glob("*.json"))
+    return [stem for stem in stems if stem.startswith("fivebar") == planar]
+
+
+def _load(name: str, mechanism: type) -> Reference:
+    data = json.loads((REFERENCE / f"{name}.json").read_text())
+    return Reference(mechanism=mechanism(**data["geometry"]), cases=data)
+
+
+@pytest.fixture(scope="module", params=_names("delta"))
 def reference(request: pytest.FixtureRequest) -> Reference:
-    data = json.loads((REFERENCE / f"{request.param}.json").read_text())
-    return Reference(mechanism=RotaryDelta(**data["geometry"]), cases=data)
+    return _load(request.param, RotaryDelta)
+
+
+@pytest.fixture(scope="module", params=_names("five-bar"))
+def planar_reference(request: pytest.FixtureRequest) -> Reference:
+    return _load(request.param, FiveBar)
 
 
 @pytest.fixture(scope="session")
