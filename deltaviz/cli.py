@@ -122,7 +122,9 @@ def _serve(options: argparse.Namespace) -> int:
 
 
 def _add_ik(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("xyz", nargs="+", metavar="MM", help="tool tip: X Y Z in mm")
+    parser.add_argument(
+        "xyz", nargs="+", metavar="MM", help="tool tip: X Y Z in mm; Y is 0 for a planar robot"
+    )
     _add_robot(parser)
     _add_json(parser)
     parser.set_defaults(run=_ik)
@@ -138,8 +140,13 @@ def _add_fk(parser: argparse.ArgumentParser) -> None:
 def _ik(options: argparse.Namespace) -> int:
     import numpy as np
 
+    from deltaviz.robots.coordinates import SPACE, CoordinateError, in_robot
+
     robot = _load(options.robot)
-    xyz = _numbers(options.xyz, robot.joint_count, "coordinates", "mm")
+    try:
+        xyz = in_robot(robot, _numbers(options.xyz, len(SPACE), "coordinates", "mm"))
+    except CoordinateError as error:
+        raise UsageError(str(error)) from None
     theta = np.degrees(robot.inverse(np.array(xyz)))
     if not np.isfinite(theta).all():
         print(f"deltaviz: {robot.reach(xyz)}", file=sys.stderr)
@@ -152,13 +159,15 @@ def _ik(options: argparse.Namespace) -> int:
 def _fk(options: argparse.Namespace) -> int:
     import numpy as np
 
+    from deltaviz.robots.coordinates import in_space
+
     robot = _load(options.robot)
     theta = _numbers(options.theta, robot.joint_count, "angles", "degrees")
     xyz = robot.forward(np.radians(theta))
     if not np.isfinite(xyz).all():
         print("deltaviz: with these angles the forearms cannot meet", file=sys.stderr)
         return FAILED
-    _print_values(xyz.tolist(), key="xyz_mm", unit="mm", digits=6, as_json=options.json)
+    _print_values(list(in_space(xyz)), key="xyz_mm", unit="mm", digits=6, as_json=options.json)
     _warn_of_limits(robot.reach(xyz))
     return OK
 

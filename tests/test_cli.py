@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -58,6 +59,27 @@ def test_outside_the_limits_is_a_solution_with_a_note(capsys: pytest.CaptureFixt
     assert "lower limit of -45°" in err
 
 
+def test_a_planar_robot_has_three_coordinates_too(capsys: pytest.CaptureFixture[str]) -> None:
+    status, out, err = run(capsys, "ik", "0", "0", "-240", "--robot", "fivebar")
+    assert (status, out, err) == (0, "53.130102  53.130102 °\n", "")  # a 3-4-5 triangle
+    status, out, _ = run(
+        capsys, "fk", "53.13010235415598", "53.13010235415598", "--robot", "fivebar"
+    )
+    assert (status, out) == (0, "0.000000  0.000000  -240.000000 mm\n")
+    status, out, err = run(capsys, "ik", "0", "5", "-240", "--robot", "fivebar")
+    assert (status, out) == (2, "")
+    assert "Y must be 0, as fivebar is planar; got 5" in err
+
+
+def test_a_turning_tool_is_the_last_angle(capsys: pytest.CaptureFixture[str]) -> None:
+    robot = str(Path(__file__).parents[1] / "docs/examples/stm32-tool.toml")
+    assert run(capsys, "ik", "0", "0", "-300", "--robot", robot)[1] == (
+        "2.271907  2.271907  2.271907  0.000000 °\n"
+    )
+    out = run(capsys, "fk", "0", "0", "0", "90", "--robot", robot)[1]
+    assert out == "0.000000  0.000000  -294.989830 mm\n"
+
+
 def test_angles_at_which_nothing_meets(capsys: pytest.CaptureFixture[str]) -> None:
     status, out, err = run(capsys, "fk", "--robot", "zheng2023", "136.5", "99.25", "-46.5")
     assert (status, out) == (1, "")
@@ -73,6 +95,8 @@ def test_angles_at_which_nothing_meets(capsys: pytest.CaptureFixture[str]) -> No
         (["ik", "0", "nan", "-300"], "'nan' is not finite"),
         (["ik", "0", "-inf", "-300"], "'-inf' is not finite"),
         (["fk", "0", "0"], "takes 3 angles in degrees; got 2"),
+        (["fk", "0", "0", "0", "--robot", "fivebar"], "takes 2 angles in degrees; got 3"),
+        (["ik", "0", "-200", "--robot", "fivebar"], "takes 3 coordinates in mm; got 2"),
         (["ik", "0", "0", "-300", "--robot", "trosen"], "did you mean 'trossen'"),
         (["serve", "--robot", "trosen"], "did you mean 'trossen'"),
         (["--robot", "./none.toml"], "none.toml"),
@@ -113,7 +137,7 @@ def test_robots_lists_the_presets(capsys: pytest.CaptureFixture[str]) -> None:
     _, out, _ = run(capsys, "robots")
     names = [line.split()[0] for line in out.splitlines()]
     assert names[0] == "stm32"
-    assert {"trossen", "zheng2023", "deltadraw"} <= set(names)
+    assert {"trossen", "zheng2023", "deltadraw", "fivebar"} <= set(names)
 
 
 def test_ports_never_fails(capsys: pytest.CaptureFixture[str]) -> None:

@@ -9,12 +9,12 @@ ROUNDING = 1e-6  # added to every margin, so that a pose exactly at a limit is l
 
 @dataclass(frozen=True, slots=True)
 class Bounds:
-    """Angles in rad, lengths in mm; box and radius bind the tool tip, None where they don't."""
+    """Angles in rad, lengths in mm; box and radius bind the tool tip. None: no such limit."""
 
     tool_offset: tuple[float, ...]
     joint_min: tuple[float, ...]
     joint_max: tuple[float, ...]
-    ball_joint_max: float
+    ball_joint_max: float | None
     z: tuple[float, float] | None = None
     x: tuple[float, float] | None = None
     y: tuple[float, float] | None = None

@@ -8,7 +8,10 @@ from deltaviz.mechanism.arrays import Array
 
 
 class Kernel(Protocol):
-    """Batch functions on C-contiguous float64 arrays of N poses; `xyz` is the tool tip.
+    """Batch functions on C-contiguous float64 arrays of N poses.
+
+    A pose is given by as many numbers as there are joints (d = n): `xyz` is the tool tip, and
+    where the tool turns, the turn behind it (see `robots.tool_kernel`).
 
     Arrays of another type, shape or layout are the caller's mistake and are not checked.
     """

@@ -20,11 +20,14 @@ class MarginKind(Enum):
     X_MAX = "upper X end of the workspace"
     Y_MIN = "lower Y end of the workspace"
     Y_MAX = "upper Y end of the workspace"
+    TOOL_MIN = "lower limit of the tool's turn"
+    TOOL_MAX = "upper limit of the tool's turn"
 
 
 @dataclass(frozen=True, slots=True)
 class Margin:
-    """What one column of `margins` tells. `arm` is 0-based, or None where no single arm is meant.
+    """What one column of `margins` tells. `arm` is the joint, 0-based, or None where no single one
+    is meant.
 
     The numbers are signed, at least 0 where legal, smooth near 0, and fall by about 1 per mm
     of travel there.
@@ -34,4 +37,6 @@ class Margin:
     arm: int | None = None
 
     def __str__(self) -> str:
-        return self.kind.value if self.arm is None else f"arm {self.arm + 1} {self.kind.value}"
+        if self.arm is None or self.kind in (MarginKind.TOOL_MIN, MarginKind.TOOL_MAX):
+            return self.kind.value
+        return f"arm {self.arm + 1} {self.kind.value}"

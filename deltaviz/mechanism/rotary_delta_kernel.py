@@ -60,7 +60,8 @@ def _geometry(mechanism: RotaryDelta, bounds: Bounds) -> Array:
 
 def _limits(mechanism: RotaryDelta, bounds: Bounds) -> Array:
     out = np.full(compiled.LIMITS, math.nan)
-    sideways = math.sin(bounds.ball_joint_max)
+    most = math.pi / 2 if bounds.ball_joint_max is None else bounds.ball_joint_max
+    sideways = math.sin(most)
     for start, values in (
         (compiled.TYPE_1_SCALE, mechanism.type_1_scale),
         (compiled.JOINT_SCALE, mechanism.joint_scale),

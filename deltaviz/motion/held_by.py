@@ -58,8 +58,12 @@ class HeldBy:
             case MarginKind.JOINT_MAX if arm is not None:
                 return f"{who}at its upper limit ({math.degrees(robot.joints.max[arm]):.1f}°)"
             case MarginKind.BALL_JOINT:
-                most = math.degrees(robot.joints.ball_joint_max)
+                most = math.degrees(robot.joints.ball_joint_max or math.pi / 2)
                 return f"{who}at its ball joints' limit ({most:.1f}°)"
+            case MarginKind.TOOL_MIN:
+                return f"Tool at its lower limit ({math.degrees(robot.joints.min[-1]):.1f}°)"
+            case MarginKind.TOOL_MAX:
+                return f"Tool at its upper limit ({math.degrees(robot.joints.max[-1]):.1f}°)"
             case MarginKind.TYPE_1:
                 return f"{who}at the edge of its reach (arm and forearm in one line)"
             case MarginKind.TYPE_2:

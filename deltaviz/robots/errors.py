@@ -5,3 +5,13 @@ from __future__ import annotations
 
 class RobotFileError(ValueError):
     """A robot that cannot be loaded: the message names field, value, line and what is legal."""
+
+
+class Inconsistent(ValueError):
+    """A field that contradicts another; `rule` says what would be legal."""
+
+    def __init__(self, field: str, value: object, rule: str) -> None:
+        super().__init__(f"{field} = {value}: {rule}")
+        self.field = field
+        self.value = value
+        self.rule = rule

@@ -6,9 +6,9 @@ import difflib
 import os
 import tomllib
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, get_args
 
-from deltaviz.robots.errors import RobotFileError
+from deltaviz.robots.errors import Inconsistent, RobotFileError
 from deltaviz.robots.presets import preset_names, preset_text
 from deltaviz.robots.source_lines import key_lines, line_of
 
@@ -35,20 +35,24 @@ def parse_robot(text: str, *, source: str = "robot file") -> Robot:
     """A robot from the text of a robot file; `source` names it in errors."""
     from pydantic import ValidationError
 
-    from deltaviz.robots.build import Inconsistent, build
-    from deltaviz.robots.schema import RobotFile
+    from deltaviz.robots.build import build
+    from deltaviz.robots.schema import FORMS
 
     try:
         data = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise RobotFileError(f"{source}: not valid TOML: {error}") from error
     lines = key_lines(text)
-    try:
-        return build(RobotFile.model_validate(data))
-    except ValidationError as error:
-        problems = _problems(error, RobotFile)
-    except Inconsistent as error:
-        problems = [(error.field, str(error))]
+    form, arms = FORMS.get(str(data.get("kind")), (None, 0))
+    if form is None:
+        problems = [("kind", _no_kind(data, tuple(FORMS)))]
+    else:
+        try:
+            return build(form.model_validate(data, context={"arms": arms}))
+        except ValidationError as error:
+            problems = _problems(error, form)
+        except Inconsistent as error:
+            problems = [(error.field, str(error))]
     located = sorted((line_of(lines, field) or 0, text) for field, text in problems)
     raise RobotFileError(
         "\n".join(
@@ -79,6 +83,11 @@ def _unknown_preset(name: str) -> str:
         f"No preset is named {name!r}; {hint}Presets: {', '.join(preset_names())}. "
         "A path to a robot file must end in .toml or contain a separator."
     )
+
+
+def _no_kind(data: dict[str, Any], kinds: tuple[str, ...]) -> str:
+    legal = f"must be {' or '.join(map(repr, kinds))}"
+    return f"kind = {data['kind']!r}: {legal}" if "kind" in data else f"kind is missing; it {legal}"
 
 
 def _problems(error: ValidationError, model: Any) -> list[tuple[str, str]]:
@@ -126,5 +135,6 @@ def _known(location: tuple[int | str, ...], model: Any) -> list[str]:
         field = getattr(model, "model_fields", {}).get(part)
         if field is None:
             return []
-        model = field.annotation
+        kinds = (field.annotation, *get_args(field.annotation))  # of an optional section, too
+        model = next((kind for kind in kinds if hasattr(kind, "model_fields")), None)
     return list(getattr(model, "model_fields", {}))

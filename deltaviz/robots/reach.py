@@ -112,7 +112,7 @@ def _ball_joint(robot: Robot, limit: Margin, tip: Array) -> Reason:
     sideways = robot.mechanism.sideways(tip - np.asarray(robot.tool_offset))[arm]
     sine = min(1.0, abs(float(sideways)) / robot.mechanism.forearm[arm])
     angle = math.degrees(math.asin(sine))
-    bound = math.degrees(robot.joints.ball_joint_max)
+    bound = math.degrees(robot.joints.ball_joint_max or math.pi / 2)
     text = (
         f"The ball joints of arm {arm + 1} would stand at {angle:.2f}°, "
         f"{_angle(angle - bound)} beyond their limit of {bound:g}°."
@@ -126,11 +126,9 @@ def _workspace(robot: Robot, limit: Margin, tip: Array) -> Reason:
         excess = float(np.linalg.norm(tip[:-1])) - space.radius
         text = f"It is {_length(excess)} outside the workspace's radius of {space.radius:g} mm."
         return Reason(limit, excess, "mm", text)
-    name, box, value = {
-        "X": ("X", space.x, tip[0]),
-        "Y": ("Y", space.y, tip[1 if len(tip) > 2 else 0]),
-        "Z": ("Z", space.z, tip[-1]),
-    }[limit.kind.name[0]]
+    name = limit.kind.name[0]  # of the axis
+    box = {"X": space.x, "Y": space.y, "Z": space.z}[name]
+    value = float(tip[robot.axes.index(name)])
     low, high = box or (-math.inf, math.inf)
     excess = float(max(low - value, value - high))
     side = "below" if value < low else "above"

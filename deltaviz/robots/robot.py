@@ -22,11 +22,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Joints:
-    """Angles in rad, one per joint; `ball_joint_max` is the same for all forearms."""
+    """Angles in rad, one per joint; `ball_joint_max` is the same for all forearms, None where
+    they have no ball joints."""
 
     min: tuple[float, ...]
     max: tuple[float, ...]
-    ball_joint_max: float
+    ball_joint_max: float | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,17 +71,14 @@ class DriveKind(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Drive:
-    """`microsteps_per_rad` of the arm's own angle; for a servo, its smallest steps.
+    """`microsteps_per_rad` of the joint's own angle; for a servo, its smallest steps.
 
-    `full_steps`, `microsteps`, `driver` and `enable_active` are None for a servo.
+    `driver` and `enable_active` are None for a servo.
     """
 
     kind: DriveKind
     microsteps_per_rad: tuple[float, ...]
     invert: tuple[bool, ...]
-    gear: tuple[float, float]
-    full_steps: int | None
-    microsteps: int | None
     driver: str | None
     enable_active: str | None
 
@@ -93,23 +91,27 @@ class Drive:
 class Homing:
     """`direction` is the sign of the joint's motion towards its switch (arms up: -1).
 
-    Angles in rad, speeds in rad/s; `switch` and `ready` have one entry per joint.
+    Angles in rad, speeds in rad/s, one per joint.
     """
 
     direction: int
     switch: tuple[float, ...]
     switch_active: str
-    fast: float
-    slow: float
-    backoff: float
-    max_travel: float
+    fast: tuple[float, ...]
+    slow: tuple[float, ...]
+    backoff: tuple[float, ...]
+    max_travel: tuple[float, ...]
     together: bool
     ready: tuple[float, ...]
 
 
 @dataclass(frozen=True)
 class Robot:
-    """Positions are the tool tip's: the tool offset is applied here and nowhere else."""
+    """Positions are the tool tip's: the tool offset is applied here and nowhere else.
+
+    With a `tool_axis` the last joint turns the tool about its tip: the joints are the mechanism's
+    and that one.
+    """
 
     name: str
     kind: str
@@ -120,29 +122,46 @@ class Robot:
     limits: Limits
     drive: Drive
     homing: Homing
+    tool_axis: bool = False
 
     @property
     def joint_count(self) -> int:
-        return self.mechanism.joints
+        return self.mechanism.joints + self.tool_axis
+
+    @property
+    def axes(self) -> tuple[str, ...]:
+        """The coordinates of the tool tip, in their order: X, Y, Z, or X, Z in a plane."""
+        return self.mechanism.axes
 
     def inverse(self, xyz: ArrayLike) -> Array:
-        """Joint angles (..., n) rad of tool tip positions (..., d) mm; NaN rows out of reach."""
-        return self.mechanism.inverse(self._centre(xyz))
+        """Joint angles (..., n) rad of tool tip positions (..., d) mm; NaN rows out of reach.
+
+        A tool axis, of which the tip tells nothing, stands at its ready angle.
+        """
+        arms = self.mechanism.inverse(self._centre(xyz))
+        if not self.tool_axis:
+            return arms
+        tool = np.full((*arms.shape[:-1], 1), self.homing.ready[-1])
+        return np.concatenate((arms, tool + 0.0 * arms[..., :1]), axis=-1)  # a NaN stays one
 
     def forward(self, theta: ArrayLike) -> Array:
         """Tool tip positions (..., d) mm of joint angles (..., n) rad; NaN where impossible."""
-        return self.mechanism.forward(theta) + np.asarray(self.tool_offset)
+        return self.mechanism.forward(self._arms(theta)) + np.asarray(self.tool_offset)
 
     def jacobian(self, theta: ArrayLike) -> Array:
         """d xyz / d theta, (..., d, n) mm/rad."""
-        return self.mechanism.jacobian(theta)
+        jacobian = self.mechanism.jacobian(self._arms(theta))
+        still = np.zeros((*jacobian.shape[:-1], int(self.tool_axis)))
+        return np.concatenate((jacobian, still), axis=-1)
 
     @cached_property
     def bounds(self) -> Bounds:
+        """What binds the mechanism."""
+        arms = self.mechanism.joints
         return Bounds(
             tool_offset=self.tool_offset,
-            joint_min=self.joints.min,
-            joint_max=self.joints.max,
+            joint_min=self.joints.min[:arms],
+            joint_max=self.joints.max[:arms],
             ball_joint_max=self.joints.ball_joint_max,
             z=self.workspace.z,
             x=self.workspace.x,
@@ -153,12 +172,26 @@ class Robot:
     @cached_property
     def kernel(self) -> Kernel:
         """Compiled batch functions for the control loop; the first use imports numba."""
-        return self.mechanism.kernel(self.bounds)
+        arms = self.mechanism.kernel(self.bounds)
+        if not self.tool_axis:
+            return arms
+        from deltaviz.robots.tool_kernel import ToolKernel
+
+        return ToolKernel(
+            arms, low=self.joints.min[-1], high=self.joints.max[-1], scale=self.turn_scale
+        )
+
+    @cached_property
+    def turn_scale(self) -> float:
+        """mm of travel that a rad of the tool's turn counts for: at full speed, as much as the
+        tip travels at its own."""
+        return self.limits.cartesian.velocity / self.limits.joint.velocity[-1]
 
     @cached_property
     def margin_names(self) -> tuple[Margin, ...]:
         """What each column of `margins` tells."""
-        arms = range(self.joint_count)
+        arms = range(self.mechanism.joints)
+        kinds = (MarginKind.TOOL_MIN, MarginKind.TOOL_MAX) if self.tool_axis else ()
         return (
             *self.mechanism.margin_names,
             *(Margin(MarginKind.BALL_JOINT, arm) for arm, _ in enumerate(self._sideways_max)),
@@ -166,6 +199,7 @@ class Robot:
             *(Margin(MarginKind.JOINT_MAX, arm) for arm in arms),
             *(Margin(kind) for axis in self._box for kind in axis[1]),
             *([Margin(MarginKind.RADIUS)] if self.workspace.radius is not None else []),
+            *(Margin(kind, len(arms)) for kind in kinds),
         )
 
     def margins(self, xyz: ArrayLike, theta: ArrayLike) -> Array:
@@ -173,19 +207,20 @@ class Robot:
         where all are at least 0. NaN angles are replaced by those nearest to reaching, so the
         margins are finite wherever `xyz` is."""
         tip = rows(xyz, len(self.tool_offset), "xyz")
-        angles = rows(theta, self.joint_count, "theta")
-        leading = np.broadcast_shapes(tip.shape[:-1], angles.shape[:-1])
+        theta = rows(theta, self.joint_count, "theta")
+        leading = np.broadcast_shapes(tip.shape[:-1], theta.shape[:-1])
         tip = np.broadcast_to(tip, (*leading, tip.shape[-1]))
-        angles = np.broadcast_to(angles, (*leading, angles.shape[-1]))
-        centre = self._centre(tip)
+        theta = np.broadcast_to(theta, (*leading, theta.shape[-1]))
+        centre, arms = self._centre(tip), self.mechanism.joints
+        angles = theta[..., :arms]
         angles = np.where(np.isnan(angles), self.mechanism.nearest_angles(centre), angles)
         most = np.asarray(self._sideways_max)
         scale = np.asarray(self.mechanism.joint_scale)
         groups = [
             self.mechanism.margins(centre, angles),
             (most**2 - self.mechanism.sideways(centre) ** 2) / (2 * most),
-            (angles - np.asarray(self.joints.min)) * scale,
-            (np.asarray(self.joints.max) - angles) * scale,
+            (angles - np.asarray(self.joints.min[:arms])) * scale,
+            (np.asarray(self.joints.max[:arms]) - angles) * scale,
         ]
         for (low, high), _, axis in self._box:
             groups.append(np.stack([tip[..., axis] - low, high - tip[..., axis]], axis=-1))
@@ -193,6 +228,12 @@ class Robot:
         if radius is not None:
             square = (tip[..., :-1] ** 2).sum(axis=-1, keepdims=True)
             groups.append((radius**2 - square) / (2 * radius))
+        if self.tool_axis:
+            turn = np.nan_to_num(theta[..., arms:], nan=self.homing.ready[-1])
+            groups += [
+                (turn - self.joints.min[-1]) * self.turn_scale,
+                (self.joints.max[-1] - turn) * self.turn_scale,
+            ]
         return np.concatenate(groups, axis=-1) + ROUNDING
 
     def reach(self, xyz: ArrayLike) -> Reach:
@@ -203,11 +244,10 @@ class Robot:
 
     @cached_property
     def _sideways_max(self) -> tuple[float, ...]:
-        width = self.mechanism.sideways(np.zeros(len(self.tool_offset))).shape[-1]
-        return tuple(
-            fore * float(np.sin(self.joints.ball_joint_max))
-            for fore in self.mechanism.forearm[:width]
-        )
+        most = self.joints.ball_joint_max
+        sine = 1.0 if most is None else float(np.sin(most))
+        width = self.mechanism.sideways(np.zeros(len(self.axes))).shape[-1]
+        return tuple(fore * sine for fore in self.mechanism.forearm[:width])
 
     @cached_property
     def _box(self) -> tuple[tuple[tuple[float, float], tuple[MarginKind, MarginKind], int], ...]:
@@ -221,3 +261,6 @@ class Robot:
 
     def _centre(self, xyz: ArrayLike) -> Array:
         return rows(xyz, len(self.tool_offset), "xyz") - np.asarray(self.tool_offset)
+
+    def _arms(self, theta: ArrayLike) -> Array:
+        return rows(theta, self.joint_count, "theta")[..., : self.mechanism.joints]

@@ -1,14 +1,16 @@
 """The robot file as pydantic sees it: fields, types, and rules of one field at a time.
 
-Angles are in degrees here, as a person writes them. `build` makes the robot of it.
+There is one form for each kind of robot. Angles are in degrees here, as a person writes them;
+how many values "per arm" means comes as the context of the validation, {"arms": n}. `build` makes
+the robot of it.
 """
 
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeAlias
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict
+from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationInfo
 
 
 class Rule(ValueError):
@@ -35,17 +37,29 @@ def _between(low: float, high: float, rule: str) -> Any:
     return check
 
 
-def _each(check: Any, count: int = 3) -> Any:
+def _at_least_zero(value: object) -> float:
+    number = _finite(value)
+    if number < 0:
+        raise Rule("must be at least 0")
+    return number
+
+
+def _each(check: Any) -> Any:
     """One value for all arms or one for each."""
 
-    def check_all(value: object) -> tuple[Any, ...]:
+    def check_all(value: object, info: ValidationInfo) -> tuple[Any, ...]:
+        arms = _arms(info)
         if not isinstance(value, list):
-            return (check(value),) * count
-        if len(value) != count:
-            raise Rule(f"must be one value, or {count} (one per arm)")
+            return (check(value),) * arms
+        if len(value) != arms:
+            raise Rule(f"must be one value, or {arms} (one per arm)")
         return tuple(check(entry) for entry in value)
 
     return check_all
+
+
+def _arms(info: ValidationInfo) -> int:
+    return (info.context or {})["arms"]
 
 
 def _list_of(check: Any, count: int, rule: str) -> Any:
@@ -55,6 +69,17 @@ def _list_of(check: Any, count: int, rule: str) -> Any:
         return tuple(check(entry) for entry in value)
 
     return check_all
+
+
+def _directions(value: object, info: ValidationInfo) -> tuple[float, ...]:
+    return _list_of(_finite, _arms(info), "must be one direction per arm")(value)
+
+
+def _planar_offset(value: object) -> tuple[float, ...]:
+    x, y, z = _list_of(_finite, 3, "must be [x, 0, z]")(value)
+    if y != 0:
+        raise Rule("must be [x, 0, z]: a planar robot has no y")
+    return x, z
 
 
 def _whole(value: object) -> int:
@@ -87,12 +112,13 @@ _angle = _between(-180.0, 180.0, "must be between -180 and 180")
 
 Positive = Annotated[float, BeforeValidator(_above_zero)]
 PerArm = Annotated[tuple[float, ...], BeforeValidator(_each(_above_zero))]
+Halves = Annotated[tuple[float, ...], BeforeValidator(_each(_at_least_zero))]
 Angles = Annotated[tuple[float, ...], BeforeValidator(_each(_angle))]
+Flag = Annotated[bool, BeforeValidator(_flag)]
 Flags = Annotated[tuple[bool, ...], BeforeValidator(_each(_flag))]
-Azimuths = Annotated[
-    tuple[float, ...], BeforeValidator(_list_of(_finite, 3, "must be one direction per arm"))
-]
+Azimuths = Annotated[tuple[float, ...], BeforeValidator(_directions)]
 Offset = Annotated[tuple[float, ...], BeforeValidator(_list_of(_finite, 3, "must be [x, y, z]"))]
+PlanarOffset = Annotated[tuple[float, ...], BeforeValidator(_planar_offset)]
 Gear = Annotated[
     tuple[float, float],
     BeforeValidator(_list_of(_above_zero, 2, "must be [motor turns, arm turns]")),
@@ -101,13 +127,16 @@ Range = Annotated[tuple[float, float], BeforeValidator(_range)]
 Whole = Annotated[int, BeforeValidator(_whole)]
 Text = Annotated[str, BeforeValidator(_text)]
 BallJoint = Annotated[float, BeforeValidator(_between(0.0, 90.0, "must be between 0 and 90"))]
+Turn = Annotated[
+    float, BeforeValidator(_between(-1080.0, 1080.0, "must be between -1080 and 1080"))
+]
 
 
 class Section(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-class Geometry(Section):
+class DeltaGeometry(Section):
     """Radii, or the sides of the base's and the effector's triangle (Trossen's f and e)."""
 
     base_radius: PerArm | None = None
@@ -120,17 +149,33 @@ class Geometry(Section):
     tool_offset: Offset = (0.0, 0.0, 0.0)
 
 
+class FiveBarGeometry(Section):
+    base_half: Halves
+    platform_half: Halves
+    upper_arm: PerArm
+    forearm: PerArm
+    tool_offset: PlanarOffset = (0.0, 0.0)
+
+
 class Joints(Section):
     min_deg: Angles
     max_deg: Angles
+
+
+class DeltaJoints(Joints):
     ball_joint_max_deg: BallJoint
 
 
-class Workspace(Section):
+class DeltaWorkspace(Section):
     z: Range
     radius: Positive | None = None
     x: Range | None = None
     y: Range | None = None
+
+
+class FiveBarWorkspace(Section):
+    x: Range
+    z: Range
 
 
 class JointMotion(Section):
@@ -150,16 +195,21 @@ class Limits(Section):
     cartesian: CartesianMotion
 
 
-class Drive(Section):
-    """A stepper needs `full_steps`, `microsteps`, `driver`, `enable_active`; a servo (simulated
-    only) `resolution_deg`, its smallest step."""
+class Motor(Section):
+    """A stepper needs `full_steps` and `microsteps`; a servo `resolution_deg`, its smallest
+    step."""
 
-    kind: Literal["step_dir", "servo"]
     full_steps: Whole | None = None
     microsteps: Whole | None = None
     resolution_deg: Positive | None = None
     gear: Gear = (1.0, 1.0)
-    invert: Flags = (False, False, False)
+
+
+class Drive(Motor):
+    """Of all motors; servos are simulated only, and have no driver and no enable line."""
+
+    kind: Literal["step_dir", "servo"]
+    invert: Flags = ()  # none
     driver: Text | None = None
     enable_active: Literal["low", "high"] | None = None
 
@@ -176,12 +226,62 @@ class Homing(Section):
     ready_deg: Angles
 
 
-class RobotFile(Section):
+class ToolMotion(Section):
+    velocity_deg_s: Positive
+    acceleration_deg_s2: Positive
+    unhomed_velocity_deg_s: Positive
+
+
+class ToolMotor(Motor):
+    invert: Flag = False
+
+
+class ToolHoming(Section):
+    switch_deg: Turn
+    fast_deg_s: Positive
+    slow_deg_s: Positive
+    backoff_deg: Positive
+    max_travel_deg: Positive
+    ready_deg: Turn
+
+
+class ToolAxis(Section):
+    """A joint that turns the tool about z, behind the arms' joints."""
+
+    min_deg: Turn
+    max_deg: Turn
+    limits: ToolMotion
+    drive: ToolMotor
+    homing: ToolHoming
+
+
+class RotaryDeltaFile(Section):
     name: Text
     kind: Literal["rotary_delta"]
-    geometry: Geometry
-    joints: Joints
-    workspace: Workspace
+    geometry: DeltaGeometry
+    joints: DeltaJoints
+    workspace: DeltaWorkspace
     limits: Limits
     drive: Drive
     homing: Homing
+    tool_axis: ToolAxis | None = None
+
+
+class FiveBarFile(Section):
+    name: Text
+    kind: Literal["five_bar"]
+    geometry: FiveBarGeometry
+    joints: Joints
+    workspace: FiveBarWorkspace
+    limits: Limits
+    drive: Drive
+    homing: Homing
+
+
+RobotFile: TypeAlias = RotaryDeltaFile | FiveBarFile
+
+# Each kind's form, and how many arms it has.
+FORMS: dict[str, tuple[type[RotaryDeltaFile] | type[FiveBarFile], int]] = {
+    "rotary_delta": (RotaryDeltaFile, 3),
+    "five_bar": (FiveBarFile, 2),
+}

@@ -1,4 +1,4 @@
-"""Surfaces always speak three coordinates, in mm and degrees; a robot its own number, in rad."""
+"""Surfaces speak three coordinates and degrees; a robot its own coordinates, and rad."""
 
 from __future__ import annotations
 
@@ -6,8 +6,7 @@ import math
 from collections.abc import Sequence
 
 from deltaviz.robots import Robot
-
-PLANAR_JOINTS = 2
+from deltaviz.robots.coordinates import CoordinateError, in_robot
 
 
 class AxesError(ValueError):
@@ -16,12 +15,10 @@ class AxesError(ValueError):
 
 def to_robot_point(robot: Robot, xyz: Sequence[float], *, field: str) -> tuple[float, ...]:
     """Three coordinates in the robot's own: a planar robot's are (x, z)."""
-    if robot.joint_count != PLANAR_JOINTS:
-        return tuple(xyz)
-    x, y, z = xyz
-    if y != 0:
-        raise AxesError(f"{field}[1] must be 0: {robot.name} is planar and has no Y; got {y:g}.")
-    return (x, z)
+    try:
+        return in_robot(robot, xyz)
+    except CoordinateError as error:
+        raise AxesError(f"{field}: {error}") from None
 
 
 def to_robot_angles(robot: Robot, degrees: Sequence[float], *, field: str) -> tuple[float, ...]:
@@ -32,10 +29,3 @@ def to_robot_angles(robot: Robot, degrees: Sequence[float], *, field: str) -> tu
             f"got {len(degrees)}."
         )
     return tuple(math.radians(angle) for angle in degrees)
-
-
-def to_surface_point(xyz: Sequence[float]) -> list[float]:
-    """Three coordinates, whatever the robot has."""
-    if len(xyz) == PLANAR_JOINTS:
-        return [float(xyz[0]), 0.0, float(xyz[1])]
-    return [float(value) for value in xyz]

@@ -9,8 +9,8 @@ from fastapi import APIRouter, HTTPException
 
 from deltaviz.machine.port import MachinePort
 from deltaviz.robots import Robot
+from deltaviz.robots.coordinates import in_space
 from deltaviz.web import models
-from deltaviz.web.axes import to_surface_point
 from deltaviz.web.desk import MALFORMED, robot_angles, robot_point
 
 
@@ -37,7 +37,7 @@ def add_kinematics(router: APIRouter, machine: MachinePort) -> None:
         for index in _impossible(xyz):
             reason = _no_pose(robot)
             raise HTTPException(422, reason if is_one else f"theta_deg[{index}]: {reason}")
-        answer = [to_surface_point(point) for point in xyz.tolist()]
+        answer = [list(in_space(point)) for point in xyz.tolist()]
         return models.ForwardAnswer(xyz_mm=_answer(answer, is_one=is_one))
 
 

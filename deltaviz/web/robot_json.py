@@ -9,16 +9,23 @@ from typing import Any
 
 from deltaviz.mechanism import Mechanism
 from deltaviz.robots import Robot, preset_names
+from deltaviz.robots.coordinates import in_space
 
 
 def robot_json(robot: Robot) -> dict[str, Any]:
-    """Lengths in mm, angles in degrees, one entry per joint; null where there is no such limit."""
+    """Lengths in mm, angles in degrees, one entry per joint; null where there is no such limit.
+
+    `axes` are the coordinates that it has, of X, Y, Z; with a `tool_axis` the last joint turns
+    the tool.
+    """
     joint, cartesian = robot.limits.joint, robot.limits.cartesian
     return {
         "name": robot.name,
         "kind": robot.kind,
         "joints": robot.joint_count,
-        "geometry": {**_geometry(robot.mechanism), "tool_offset": list(robot.tool_offset)},
+        "axes": list(robot.axes),
+        "tool_axis": robot.tool_axis,
+        "geometry": {**_geometry(robot.mechanism), "tool_offset": in_space(robot.tool_offset)},
         "workspace": {
             axis: _plain(getattr(robot.workspace, axis)) for axis in ("x", "y", "z", "radius")
         },
@@ -26,7 +33,7 @@ def robot_json(robot: Robot) -> dict[str, Any]:
             "joint": {
                 "min_deg": _degrees(robot.joints.min),
                 "max_deg": _degrees(robot.joints.max),
-                "ball_joint_max_deg": _degrees([robot.joints.ball_joint_max])[0],
+                "ball_joint_max_deg": _ball_joint_max(robot),
                 "velocity_deg_s": _degrees(joint.velocity),
                 "acceleration_deg_s2": _degrees(joint.acceleration),
                 "unhomed_velocity_deg_s": _degrees(joint.unhomed_velocity),
@@ -46,6 +53,11 @@ def _geometry(mechanism: Mechanism) -> dict[str, Any]:
     if is_dataclass(mechanism) and not isinstance(mechanism, type):
         return asdict(mechanism)
     return {}
+
+
+def _ball_joint_max(robot: Robot) -> float | None:
+    most = robot.joints.ball_joint_max
+    return None if most is None else _degrees([most])[0]
 
 
 def _plain(value: float | Sequence[float] | None) -> float | list[float] | None:

@@ -8,7 +8,7 @@ from typing import Any
 
 from deltaviz.machine.snapshot import LinkStatus, Snapshot
 from deltaviz.robots import Robot
-from deltaviz.web.axes import to_surface_point
+from deltaviz.robots.coordinates import SPACE, in_space
 
 _DIGITS = 4  # of a mm or a degree: finer than any board's step
 
@@ -62,7 +62,7 @@ def _control(holder: str | None, client: str) -> dict[str, Any]:
 
 
 def _point(xyz: Sequence[float] | None) -> list[float | None] | None:
-    return None if xyz is None else [_number(value) for value in to_surface_point(xyz)]
+    return None if xyz is None else [_number(value) for value in in_space(xyz)]
 
 
 def _angles(theta: Sequence[float] | None) -> list[float | None] | None:
@@ -70,7 +70,7 @@ def _angles(theta: Sequence[float] | None) -> list[float | None] | None:
 
 
 def _point_shares(speed: Sequence[float] | None, limit: float) -> list[float | None] | None:
-    return None if speed is None else _shares(to_surface_point(speed), [limit] * 3)
+    return None if speed is None else _shares(in_space(speed), [limit] * len(SPACE))
 
 
 def _shares(speed: Sequence[float] | None, limits: Sequence[float]) -> list[float | None] | None:

@@ -1,11 +1,12 @@
 """The compiled functions are the numpy functions, for the tool tip and with all limits."""
 
+import importlib
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from deltaviz.mechanism import RotaryDelta
+from deltaviz.mechanism import FiveBar, RotaryDelta
 from deltaviz.robots import Robot, load_robot, preset_names
 from deltaviz.robots.robot import Workspace
 
@@ -27,17 +28,37 @@ def uneven_robot() -> Robot:
     )
 
 
-@pytest.fixture(scope="module", params=[*preset_names(), "uneven"])
+def uneven_five_bar() -> Robot:
+    mechanism = FiveBar(
+        base_half=(60.0, 0.0),
+        platform_half=(20.0, 18.0),
+        upper_arm=(100.0, 104.0),
+        forearm=(200.0, 195.0),
+    )
+    plain = load_robot("fivebar")
+    return replace(
+        plain,
+        mechanism=mechanism,
+        tool_offset=(3.0, -25.0),
+        workspace=Workspace(z=(-270.0, -150.0), x=None),
+    )
+
+
+UNEVEN = {"uneven": uneven_robot, "uneven five-bar": uneven_five_bar}
+
+
+@pytest.fixture(scope="module", params=[*preset_names(), *UNEVEN])
 def robot(request):
-    return uneven_robot() if request.param == "uneven" else load_robot(request.param)
+    return UNEVEN.get(request.param, lambda: load_robot(request.param))()
 
 
 @pytest.fixture(scope="module")
 def points(robot):
     """In, beside and out of reach."""
     size = robot.mechanism.upper_arm[0] + robot.mechanism.forearm[0]
-    rng = np.random.default_rng(7)
-    return rng.uniform([-size, -size, -1.1 * size], [size, size, 0.1 * size], (4000, 3))
+    across = len(robot.axes) - 1
+    low, high = [-size] * across + [-1.1 * size], [size] * across + [0.1 * size]
+    return np.random.default_rng(7).uniform(low, high, (4000, across + 1))
 
 
 @pytest.fixture(scope="module")
@@ -59,7 +80,7 @@ def test_inverse(robot, points):
 
 
 def test_forward(robot):
-    theta = np.random.default_rng(8).uniform(-1.5, 2.5, (4000, 3))
+    theta = np.random.default_rng(8).uniform(-1.5, 2.5, (4000, robot.joint_count))
     same(robot.kernel.forward(theta), robot.forward(theta), 1e-9)
 
 
@@ -74,7 +95,7 @@ def test_margins_inside_and_outside(robot, points):
 def test_velocities_are_the_jacobians(robot, poses):
     xyz, theta = poses
     well = np.abs(robot.mechanism.det_jx(xyz - robot.tool_offset, theta)) > 1e-2 * (
-        robot.mechanism.forearm[0] ** 3
+        robot.mechanism.forearm[0] ** len(robot.axes)
     )
     well &= robot.mechanism.jq(xyz - robot.tool_offset, theta).min(axis=-1) > 100.0
     xyz, theta = np.ascontiguousarray(xyz[well]), np.ascontiguousarray(theta[well])
@@ -96,14 +117,15 @@ def test_velocity_at_an_outstretched_arm_is_not_finite():
 
 
 def test_no_poses(robot):
-    empty = np.empty((0, 3))
-    assert robot.kernel.inverse(empty).shape == (0, 3)
+    empty = np.empty((0, robot.joint_count))
+    assert robot.kernel.inverse(empty).shape == empty.shape
     assert robot.kernel.margins(empty, empty).shape == (0, len(robot.margin_names))
 
 
 def test_warm_up_compiles_everything(robot):
     robot.kernel.warm_up()
-    from deltaviz.mechanism import rotary_delta_compiled as compiled
-
+    planar = isinstance(robot.mechanism, FiveBar)
+    name = "five_bar_compiled" if planar else "rotary_delta_compiled"
+    compiled = importlib.import_module(f"deltaviz.mechanism.{name}")
     for name in ("inverse", "forward", "margins", "joint_velocity", "tip_velocity"):
         assert len(getattr(compiled, name).signatures) == 1, "a later call would compile"

@@ -9,6 +9,7 @@ import pytest
 
 from deltaviz.robots import RobotFileError, load_robot
 from deltaviz.robots.load import parse_robot
+from deltaviz.robots.presets import preset_text
 
 
 def line_with(text: str, start: str) -> int:
@@ -91,14 +92,41 @@ CHANGES = [
     ("ready_deg = 0", "ready_deg = [0, 0, 100]", "homing.ready_deg", "arm 3 upper joint limit"),
     ("ready_deg = 0", "ready_deg = [0, 0]", "homing.ready_deg", "one value, or 3"),
     ('name = "stm32"', 'name = ""', "name", "a text"),
-    ('kind = "rotary_delta"', 'kind = "hexapod"', "kind", "'rotary_delta'"),
+    ('kind = "rotary_delta"', 'kind = "hexapod"', "kind", "must be 'rotary_delta' or 'five_bar'"),
+    ('kind = "rotary_delta"', "kind = 3", "kind", "3: must be 'rotary_delta' or"),
+]
+
+# The same for the preset fivebar.
+PLANAR_CHANGES = [
+    ("base_half = 80.0", "base_half = -1", "geometry.base_half", "at least 0"),
+    ("base_half = 80.0", "base_half = [80, 80, 80]", "geometry.base_half", "one value, or 2"),
+    ("base_half = 80.0", "base_half = 700", "geometry.base_half", "forearms cannot meet"),
+    ("base_half = 80.0", "base_hlaf = 80", "geometry.base_hlaf", "did you mean 'base_half'"),
+    ("base_half = 80.0", "base_radius = 80", "geometry.base_radius", "did you mean 'base_half'"),
+    ("forearm = 200.0", "forearm = 0", "geometry.forearm", "greater than 0"),
+    ("tool_offset = [0, 0, 0]", "tool_offset = [0, 5, 0]", "geometry.tool_offset", "has no y"),
+    ("min_deg = -45", "min_deg = [-45, -45, -45]", "joints.min_deg", "one value, or 2"),
+    ("max_deg = 90", "ball_joint_max_deg = 40", "joints.ball_joint_max_deg", "known here: min_deg"),
+    ("x = [-100, 100]", "radius = 100", "workspace.radius", "known here: x, z"),
+    ("z = [-240, -130]", "z = [10, 20]", "workspace", "at least one point"),
+    ("invert = [false, false]", "invert = [1, 0]", "drive.invert", "true or false"),
+    ("switch_deg = [-50, -50]", "switch_deg = [-50, -30]", "homing.switch_deg", r"min_deg \(-45\)"),
+    ("ready_deg = 20 ", "ready_deg = 88 ", "homing.ready_deg", "lower end of the workspace"),
+    ("ready_deg = 20 ", "ready_deg = [0, 95] ", "homing.ready_deg", "arm 2 upper joint limit"),
+    ('name = "fivebar"', 'name = "x"\ntool_axis = 3', "tool_axis", "known here: name, kind"),
 ]
 
 
-@pytest.mark.parametrize(("before", "after", "field", "says"), CHANGES, ids=lambda part: part[:40])
-def test_what_is_wrong_and_where(stm32_text, before, after, field, says):
-    assert before in stm32_text
-    text = stm32_text.replace(before, after)
+@pytest.mark.parametrize(
+    ("preset", "before", "after", "field", "says"),
+    [("stm32", *change) for change in CHANGES]
+    + [("fivebar", *change) for change in PLANAR_CHANGES],
+    ids=lambda part: part[:40],
+)
+def test_what_is_wrong_and_where(preset, before, after, field, says):
+    good = preset_text(preset)
+    assert before in good
+    text = good.replace(before, after)
     with pytest.raises(RobotFileError) as refused:
         parse_robot(text, source="my.toml")
     message = str(refused.value)
@@ -127,6 +155,12 @@ def test_a_missing_field_is_named_with_its_section(stm32_text, line, field, sect
 def test_a_missing_section(stm32_text):
     with pytest.raises(RobotFileError, match="workspace is missing"):
         parse_robot(re.sub(r"\[workspace\][^\[]*\[[^\[]*", "", stm32_text))
+
+
+def test_a_missing_kind(stm32_text):
+    text = stm32_text.replace('kind = "rotary_delta"', "")
+    with pytest.raises(RobotFileError, match="kind is missing; it must be 'rotary_delta' or"):
+        parse_robot(text)
 
 
 def test_a_value_in_the_place_of_a_section():
@@ -216,7 +250,7 @@ class TestNamesAndPaths:
             load_robot(name)
 
     def test_an_unknown_preset_lists_the_known(self):
-        with pytest.raises(RobotFileError, match="stm32, deltadraw, trossen, zheng2023"):
+        with pytest.raises(RobotFileError, match="stm32, deltadraw, fivebar, trossen, zheng2023"):
             load_robot("xyzzy")
 
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from deltaviz.mechanism import RotaryDelta
+from deltaviz.mechanism import FiveBar, RotaryDelta
 from deltaviz.robots import Robot, load_robot, preset_names
 from deltaviz.robots.robot import DriveKind
 
@@ -16,7 +16,7 @@ def delta(robot: Robot) -> RotaryDelta:
 
 
 def test_names_with_the_default_first():
-    assert preset_names() == ("stm32", "deltadraw", "trossen", "zheng2023")
+    assert preset_names() == ("stm32", "deltadraw", "fivebar", "trossen", "zheng2023")
 
 
 def test_stm32_is_the_robot_of_the_contract():
@@ -24,7 +24,7 @@ def test_stm32_is_the_robot_of_the_contract():
     assert (robot.name, robot.kind, robot.joint_count) == ("stm32", "rotary_delta", 3)
     assert np.degrees(robot.joints.min) == pytest.approx([-45] * 3)
     assert np.degrees(robot.joints.max) == pytest.approx([90] * 3)
-    assert math.degrees(robot.joints.ball_joint_max) == pytest.approx(45)
+    assert robot.joints.ball_joint_max == pytest.approx(math.radians(45))
     assert robot.workspace.z == (-440, -225)
     assert robot.workspace.radius == 230
     assert np.degrees(robot.limits.joint.velocity) == pytest.approx([340] * 3)
@@ -70,6 +70,19 @@ def test_deltadraw_draws_in_simulation_only():
     assert offset == pytest.approx(1.11125 * 25.4)
 
 
+def test_fivebar_is_the_planar_robot():
+    robot = load_robot("fivebar")
+    assert (robot.kind, robot.joint_count, robot.axes) == ("five_bar", 2, ("X", "Z"))
+    assert isinstance(robot.mechanism, FiveBar)
+    assert robot.tool_offset == (0, 0)
+    # Both arms in mirror image: 20° down, elbows at x = 60 + 100 cos 20°.
+    across, down = 60 + 100 * math.cos(robot.homing.ready[0]), 100 * math.sin(robot.homing.ready[0])
+    tip = robot.forward(robot.homing.ready)
+    assert tip == pytest.approx([0, -down - math.sqrt(200**2 - across**2)])
+    assert robot.workspace.x == (-100, 100)
+    assert (robot.workspace.y, robot.workspace.radius, robot.joints.ball_joint_max) == (None,) * 3
+
+
 def test_ready_is_well_inside(preset):
     tip = preset.forward(preset.homing.ready)
     assert preset.margins(tip, preset.homing.ready).min() > 5
@@ -78,20 +91,19 @@ def test_ready_is_well_inside(preset):
 
 def test_most_of_the_workspace_is_within_reach(preset):
     space = preset.workspace
-    wide = space.radius or max(space.x[1], space.y[1])
-    low, high = [-wide, -wide, space.z[0]], [wide, wide, space.z[1]]
-    points = np.random.default_rng(3).uniform(low, high, (5000, 3))
+    around = (-(space.radius or 0), space.radius or 0)
+    ranges = {"X": space.x or around, "Y": space.y or around, "Z": space.z}
+    low, high = np.array([ranges[axis] for axis in preset.axes]).T
+    points = np.random.default_rng(3).uniform(low, high, (5000, len(preset.axes)))
     if space.radius is not None:
         points = points[np.hypot(points[:, 0], points[:, 1]) <= space.radius]
-    else:
-        points = points[(np.abs(points[:, :2]) <= [space.x[1], space.y[1]]).all(axis=-1)]
     legal = (preset.kernel.margins(points, preset.kernel.inverse(points)) >= 0).all(axis=-1)
     assert legal.mean() > 0.7
 
 
 def test_no_type_2_singularity_within_the_joint_limits(preset):
     """s + L < l: the published evidence holds for joints within ±90°."""
-    for arm in delta(preset).arms:
+    for arm in preset.mechanism.arms:
         assert arm.offset + arm.upper_arm < arm.forearm
     assert max(np.abs([preset.joints.min, preset.joints.max]).flat) <= math.radians(90)
 

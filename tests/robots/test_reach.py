@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from deltaviz.mechanism import MarginKind
+from deltaviz.robots import load_robot
 from deltaviz.robots.robot import Workspace
 
 OPEN = Workspace(z=(-2000.0, 2000.0), radius=2000.0)
@@ -126,13 +127,26 @@ def test_what_is_no_point(stm32, bad, says):
         stm32.reach(bad)
 
 
+def test_in_a_plane():
+    robot = load_robot("fivebar")
+    reach = robot.reach([0, -350])
+    for arm in range(2):
+        excess = np.hypot(60, 350) - 300
+        assert only(reach, MarginKind.TYPE_1, arm).excess == pytest.approx(excess)
+    assert "Z -350 mm is 110.00 mm below the workspace" in str(reach)
+    assert "X 104 mm is 4.00 mm above the workspace" in str(robot.reach([104, -160]))
+    with pytest.raises(ValueError, match=r"xyz has shape \(3,\)"):
+        robot.reach([0, 0, -200])
+
+
 def test_legal_is_what_margins_say(preset):
     """One truth: `reach` agrees with `margins` and with the kernel, everywhere."""
     rng = np.random.default_rng(4)
     space = preset.workspace
-    wide = 1.2 * (space.radius or max(space.x[1], space.y[1]))
-    low, high = [-wide, -wide, space.z[0] - 20], [wide, wide, space.z[1] + 20]
-    points = rng.uniform(low, high, (400, 3))
+    wide = 1.2 * (space.radius or max(box[1] for box in (space.x, space.y) if box))
+    across = len(preset.axes) - 1
+    low, high = [-wide] * across + [space.z[0] - 20], [wide] * across + [space.z[1] + 20]
+    points = rng.uniform(low, high, (400, len(preset.axes)))
     theta = preset.kernel.inverse(points)
     legal = (preset.kernel.margins(points, theta) >= 0).all(axis=-1)
     assert 0.1 < legal.mean() < 0.9

@@ -54,7 +54,7 @@ def test_each_margin_falls_by_about_one_per_mm(preset):
     start = preset.forward(preset.homing.ready)
     slopes = []
     for _ in range(60):
-        direction = rng.normal(size=3)
+        direction = rng.normal(size=len(start))
         direction /= np.linalg.norm(direction)
         way = start + np.linspace(0, 1500, 3001)[:, None] * direction
         margins = preset.kernel.margins(way, preset.kernel.inverse(way))
