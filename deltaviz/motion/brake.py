@@ -35,7 +35,7 @@ def brake_plan(space: JointSpace, theta: Array, rate: Array, period: float) -> P
         space=space,
         theta=along,
         rate=velocity,
-        xyz=space.kernel.forward(np.ascontiguousarray(along)),
+        pose=space.kernel.forward(np.ascontiguousarray(along)),
         q=along,
         v=velocity,
         a=acceleration,

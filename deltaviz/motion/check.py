@@ -64,16 +64,18 @@ class Checker:
         *,
         velocity: Array,
         acceleration: Array,
+        tip_axes: int,
         tip_velocity: float,
         tip_acceleration: float,
     ) -> None:
         self.kernel = kernel
         self.velocity = velocity
         self.acceleration = acceleration
+        self.tip_axes = tip_axes
         self.tip_velocity = tip_velocity
         self.tip_acceleration = tip_acceleration
 
-    def __call__(self, theta: Array, rate: Array, xyz: Array, duration: float) -> Verdict:
+    def __call__(self, theta: Array, rate: Array, pose: Array, duration: float) -> Verdict:
         """Checks the knots (K+1, n), (K+1, n), (K+1, d), each `duration` seconds apart.
 
         Row 0 is the state already sent; its own brake has been checked before. A path that
@@ -93,15 +95,15 @@ class Checker:
         if not same_branch(back[count:], points[count:]):
             return Verdict(Fault.BRAKE, -1, *peaks, 0.0, 0.0)
         margins = kernel.margins(
-            np.concatenate((xyz, reached[:sampled])), np.concatenate((theta, points[:sampled]))
+            np.concatenate((pose, reached[:sampled])), np.concatenate((theta, points[:sampled]))
         )
         fault, column = judge(margins, count, AT_KNOTS, BETWEEN)
         tip = kernel.tip_velocity(
-            np.concatenate((xyz, reached[sampled:], xyz[:-1], xyz[1:])),
+            np.concatenate((pose, reached[sampled:], pose[:-1], pose[1:])),
             np.concatenate((theta, points[sampled:], theta[:-1], theta[1:])),
             np.concatenate((rate, rate, rate, first, last)),
         )
-        speed, thrust = tip_peaks(tip, count, duration, TANGENT_STEP)
+        speed, thrust = tip_peaks(tip, self.tip_axes, count, duration, TANGENT_STEP)
         return Verdict(
             Fault(fault),
             column,

@@ -133,15 +133,16 @@ def first_bad_brake(margins: Array, between: float) -> int:
 
 
 @compiled
-def tip_peaks(tip: Array, count: int, duration: float, step: float) -> tuple[float, float]:
-    """The tip's largest speed and acceleration (norms).
+def tip_peaks(
+    tip: Array, axes: int, count: int, duration: float, step: float
+) -> tuple[float, float]:
+    """The tip's largest speed and acceleration (norms over its `axes`).
 
     Rows: velocities at the K+1 knots, ahead of them, behind them; then the end accelerations of
     the K cubics mapped by the Jacobian, at their first and last knots. Where the speed rises at
     the one end of a segment and falls at the other, it has its peak between.
     """
     rows = count + 1
-    axes = tip.shape[1]
     fastest = 0.0
     hardest = 0.0
     speed = np.zeros(2)

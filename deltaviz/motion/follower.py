@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from deltaviz.motion.brake import brake_plan
+from deltaviz.motion.dynamics import brake_time
 from deltaviz.motion.followed import Array, Followed
 from deltaviz.motion.goal import AtJointVelocity, AtVelocity, Goal, Rest, ToAngles, ToPoint
 from deltaviz.motion.held import Held
@@ -53,14 +54,14 @@ class Follower:
             robot, (self._tip, self._turn), period=period, clock=clock, budget=budget
         )
         inside = _inside(robot, self._turn)
-        xyz = robot.kernel.forward(inside[None, :])[0]
+        pose = robot.kernel.forward(inside[None, :])[0]
         self._seekers = {
-            self._tip: Seeker(self._tip, xyz),
+            self._tip: Seeker(self._tip, pose),
             self._turn: Seeker(self._turn, inside),
         }
         self._jogs = {space: Jog(space) for space in (self._tip, self._turn)}
         self._held_by = HeldBy(robot)
-        self._warm_up(inside, xyz)
+        self._warm_up(inside, pose)
         start = np.array(theta, dtype=float)
         if start.shape != (robot.joint_count,) or not np.isfinite(start).all():
             raise ValueError(f"theta is {theta}; it must be {robot.joint_count} finite angles")
@@ -72,16 +73,16 @@ class Follower:
         self._wait = 0  # ticks until planning is tried again
         self._failures = 0
         self._held = False  # a limit keeps the goal from being met
-        self._aim = start, self._plan.xyz[0]
+        self._aim = start, self._plan.pose[0]
 
-    def _warm_up(self, inside: Array, xyz: Array) -> None:
+    def _warm_up(self, inside: Array, pose: Array) -> None:
         """Compiles everything now, so that no call stalls."""
         self._robot.kernel.warm_up()
         state = self._standing(inside)
-        for space, q in ((self._turn, inside), (self._tip, xyz)):
+        for space, q in ((self._turn, inside), (self._tip, pose)):
             state = self._planner.in_space(state, 0, space)
             self._seekers[space].retarget(q + 1e3 * space.unit, q, slide=True)
-            way = Way(np.full(space.axes, 0.1 * space.unit), self._top(space))
+            way = Way(np.full(space.axes, 0.1 * space.unit), space.top)
             self._planner.begin()
             self._planner(space, state, 0, way)
             self._seekers[space].forget()
@@ -102,7 +103,7 @@ class Follower:
     @property
     def xyz(self) -> Array:
         """The tool tip (d,) at the last knot, mm."""
-        return self._plan.xyz[self._at]
+        return self._plan.pose[self._at][: self._tip.tip_axes]
 
     @property
     def resting(self) -> bool:
@@ -122,14 +123,14 @@ class Follower:
     @property
     def target_xyz(self) -> Array:
         """The tool tip position (d,) that is followed now."""
-        return self._aim[1]
+        return self._aim[1][: self._tip.tip_axes]
 
     @property
     def held_by(self) -> tuple[Held, ...]:
         """The limits that keep the goal from being met; empty while none does."""
         if not self._held:
             return ()
-        return self._held_by(self.xyz, self.theta, self._wanted_direction())
+        return self._held_by(self._plan.pose[self._at], self._wanted_direction())
 
     # One period.
 
@@ -147,12 +148,10 @@ class Follower:
         return self._advance()
 
     def _accept(self, goal: Goal, override: float) -> None:
-        values = _values(goal)
-        if len(values) not in (0, self._robot.joint_count) or not all(map(math.isfinite, values)):
-            raise ValueError(f"{goal} must have {self._robot.joint_count} finite values")
+        self._check(goal)
         if not 0.0 <= override <= 1.5:
             raise ValueError(f"override is {override}; it must be from 0 to 1.5")
-        moved = type(goal) is not type(self._goal) or values != _values(self._goal)
+        moved = _what(goal) != _what(self._goal)
         self._goal, self._override = goal, override
         self._settled, self._wait, self._failures = False, 0, 0
         self._held = False
@@ -160,12 +159,25 @@ class Follower:
             self._planner.forget()
         if not moved:
             return
+        self._aim = self._aimed_at(goal)
         space = self._space_of(goal)
         if isinstance(goal, (ToPoint, ToAngles)):
             q = self._in(space).q[0]
             slide = not isinstance(goal, ToPoint) or goal.slide
-            self._seekers[space].retarget(np.array(values), q, slide=slide)
-        self._aim = self._aimed_at(goal)
+            theta, pose = self._aim
+            target = pose if space is self._tip else theta
+            self._seekers[space].retarget(target, q, slide=slide)
+
+    def _check(self, goal: Goal) -> None:
+        values = _values(goal)
+        count = 0 if isinstance(goal, Rest) else self._space_of(goal).axes
+        if isinstance(goal, (ToPoint, AtVelocity)):
+            count = self._tip.tip_axes
+        if len(values) != count or not all(map(math.isfinite, values)):
+            raise ValueError(f"{goal} must have {count} finite values")
+        tool = goal.tool if isinstance(goal, ToPoint) else None
+        if tool is not None and not (self._robot.tool_axis and math.isfinite(tool)):
+            raise ValueError(f"{goal} turns a tool that does not turn, or to no angle")
 
     def _replan(self) -> None:
         goal = self._goal
@@ -195,7 +207,7 @@ class Follower:
         if self.resting or self._plan.braking:
             return
         space = self._plan.space
-        plan = self._planner(space, self._plan, self._at, Way(None, self._top(space)))
+        plan = self._planner(space, self._plan, self._at, Way(None, space.top))
         if plan is None:
             self._brake()
         else:
@@ -210,7 +222,7 @@ class Follower:
             self._held = not seeker.exact
             self._settled = not seeker.searching
             return
-        speed = self._top(space) * min(1.0, goal.speed * self._override)
+        speed = space.top * min(1.0, goal.speed * self._override)
         for place, direct in seeker.places(state.q[0], slide=slide):
             if float(np.linalg.norm(place - state.q[0])) < 1e-6 * space.unit:
                 continue
@@ -231,13 +243,9 @@ class Follower:
     def _jog(self, goal: AtVelocity | AtJointVelocity) -> None:
         space = self._space_of(goal)
         state = self._in(space)
-        wanted = np.array(_values(goal)) * self._override
-        top = self._top(space)
-        excess = float(np.linalg.norm(wanted)) / float(top[0])
-        if isinstance(space, JointSpace):
-            excess = float(np.max(np.abs(wanted) / top))
-        if excess > 1.0:
-            wanted /= excess
+        wanted = np.zeros(space.axes)
+        wanted[: len(_values(goal))] = _values(goal)  # a tool that turns comes to rest
+        wanted *= self._override / max(1.0, space.share(wanted) * self._override)
         ease = self._planner.acceleration
         way, held = self._jogs[space].way(state.q[0], state.v[0], wanted, ease=ease)
         if way.displacement is None and self.resting:
@@ -284,38 +292,42 @@ class Follower:
             at = slice(self._at, self._at + 1)
             plan = self._plan
             return Plan(
-                space, plan.theta[at], plan.rate[at], plan.xyz[at],
+                space, plan.theta[at], plan.rate[at], plan.pose[at],
                 plan.q[at], plan.v[at], plan.a[at], self._period,
             )  # fmt: skip
         return self._planner.in_space(self._plan, self._at, space)
 
     def _standing(self, theta: Array) -> Plan:
-        pose = theta[None, :]
-        still = np.zeros_like(pose)
-        xyz = self._robot.kernel.forward(np.ascontiguousarray(pose))
-        return Plan(self._turn, pose, still, xyz, pose, still, still, self._period)
-
-    def _top(self, space: Space) -> Array:
-        return np.atleast_1d(np.asarray(space.velocity, dtype=float))
+        theta = theta[None, :]
+        still = np.zeros_like(theta)
+        pose = self._robot.kernel.forward(np.ascontiguousarray(theta))
+        return Plan(self._turn, theta, still, pose, theta, still, still, self._period)
 
     def _aimed_at(self, goal: Goal) -> tuple[Array, Array]:
+        """Angles and pose of where the goal leads."""
         kernel = self._robot.kernel
         if isinstance(goal, ToPoint):
-            xyz = np.array([goal.xyz], dtype=float)
-            return kernel.inverse(xyz)[0], xyz[0]
+            tool = self._tool_at_rest() if goal.tool is None else goal.tool
+            pose = self._robot.pose(np.array(goal.xyz, dtype=float), tool)
+            return kernel.inverse(pose[None, :])[0], pose
         if isinstance(goal, ToAngles):
             theta = np.array([goal.theta], dtype=float)
             return theta[0], kernel.forward(theta)[0]
-        return self._plan.theta[-1], self._plan.xyz[-1]
+        return self._plan.theta[-1], self._plan.pose[-1]
+
+    def _tool_at_rest(self) -> float:
+        """The angle at which the brake, whose end is legal, would leave the tool."""
+        seconds = brake_time(self.velocity, self._turn.acceleration)
+        return float(self.theta[-1] + self.velocity[-1] * seconds / 2)
 
     def _wanted_direction(self) -> Array:
-        """The base direction (d,) in which the goal would have the tip go."""
-        goal = self._goal
+        """The direction (n,) in which the goal would have the pose go."""
+        goal, pose = self._goal, self._plan.pose[self._at]
         match goal:
             case ToPoint():
-                return np.array(goal.xyz) - self.xyz
+                return self._aim[1] - pose
             case AtVelocity():
-                return np.array(goal.xyz)
+                return np.append(goal.xyz, np.zeros(len(pose) - len(goal.xyz)))
             case ToAngles():
                 rate = np.array(goal.theta) - self.theta
             case AtJointVelocity():
@@ -323,7 +335,7 @@ class Follower:
             case Rest():
                 rate = np.zeros(self._robot.joint_count)
         kernel = self._robot.kernel
-        return kernel.tip_velocity(self.xyz[None, :], self.theta[None, :], rate[None, :])[0]
+        return kernel.tip_velocity(pose[None, :], self.theta[None, :], rate[None, :])[0]
 
 
 def _values(goal: Goal) -> tuple[float, ...]:
@@ -334,6 +346,11 @@ def _values(goal: Goal) -> tuple[float, ...]:
             return goal.theta
         case Rest():
             return ()
+
+
+def _what(goal: Goal) -> tuple[object, ...]:
+    """What a goal asks for, whatever its speed."""
+    return type(goal), _values(goal), goal.tool if isinstance(goal, ToPoint) else None
 
 
 def _inside(robot: Followed, space: JointSpace) -> Array:

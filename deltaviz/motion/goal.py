@@ -15,12 +15,14 @@ class ToPoint:
     """Follow a tool tip position (mm). Out of reach: slide along the boundary towards it.
 
     From rest and with `slide` off the way is straight. `speed` is a share (0-1] of the
-    Cartesian velocity limit, before the feed override.
+    Cartesian velocity limit, before the feed override. `tool` is the angle (rad) to which a
+    turning tool turns on the way; None: it comes to rest.
     """
 
     xyz: tuple[float, ...]
     speed: float = 1.0
     slide: bool = True
+    tool: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

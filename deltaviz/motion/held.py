@@ -10,8 +10,8 @@ class Held:
     """One limit that holds the motion back now.
 
     `limit` names it for a person ("Arm 2 at its upper limit (90.0°)"), `arm` is its joint
-    (0-based) or None, `way_out` the base-frame directions that lead away from it, as signed
-    axis names ("-X", "+Z").
+    (0-based) or None, `way_out` the directions that lead away from it, as signed names: of the
+    base's axes ("-X", "+Z"), or of the tool's turn ("-Tool").
     """
 
     limit: str

@@ -12,7 +12,7 @@ from deltaviz.motion.held import Held
 
 NEAR = 1.0  # units of margin, about mm: a limit this close can hold a motion back
 PROBE = 1e-3  # mm
-AXES = ("X", "Y", "Z", "U")
+TURN = "Tool"  # the direction that is a turn of the tool
 CLEAR = 0.05  # a direction leads out if each margin grows at least by this per mm
 
 
@@ -22,13 +22,14 @@ class HeldBy:
     def __init__(self, robot: Followed) -> None:
         self._robot = robot
         self._names = robot.margin_names
+        self._axes = (*robot.axes, TURN)[: robot.joint_count]
 
-    def __call__(self, xyz: Array, theta: Array, wanted: Array) -> tuple[Held, ...]:
-        """The limits near (xyz (d,), theta (n,)) that are against going along `wanted` (d,)."""
+    def __call__(self, pose: Array, wanted: Array) -> tuple[Held, ...]:
+        """The limits near a pose (n,) that are against going along `wanted` (n,)."""
         kernel = self._robot.kernel
-        axes = len(xyz)
+        axes = len(pose)
         probes = np.concatenate((np.zeros((1, axes)), np.eye(axes), -np.eye(axes))) * PROBE
-        places = np.ascontiguousarray(xyz + probes)
+        places = np.ascontiguousarray(pose + probes)
         margins = kernel.margins(places, kernel.inverse(places))
         slopes = (margins[1 : axes + 1] - margins[axes + 1 :]) / (2 * PROBE)
         near = np.flatnonzero(margins[0] < NEAR)
@@ -41,11 +42,10 @@ class HeldBy:
         """Signed axes along which all near margins grow; else none gets worse; else most grow."""
         if slopes.shape[1] == 0:
             return ()
-        names = AXES if slopes.shape[0] != 2 else ("X", "Z")
         signed = [(sign, axis) for axis in range(slopes.shape[0]) for sign in (1, -1)]
         worst = {pair: float((pair[0] * slopes[pair[1]]).min()) for pair in signed}
         out = [pair for pair in signed if worst[pair] > CLEAR]
-        return tuple(f"{'+' if sign > 0 else '-'}{names[axis]}" for sign, axis in out)
+        return tuple(f"{'+' if sign > 0 else '-'}{self._axes[axis]}" for sign, axis in out)
 
     def words(self, name: Margin) -> str:
         """The limit of one margin, for a person."""

@@ -7,7 +7,7 @@ import numpy as np
 from deltaviz.motion.boundary import Boundary
 from deltaviz.motion.followed import Array
 from deltaviz.motion.shaping import Way
-from deltaviz.motion.space import CartesianSpace, Space
+from deltaviz.motion.space import CartesianSpace, Group, Space
 
 AHEAD = 0.25  # s of steady motion before a plan begins to slow
 RESERVE = 0.05  # units of margin, about mm, that a jog keeps to a limit
@@ -45,20 +45,27 @@ class Jog:
         return Way(ahead * travel, self._speeds(wanted), free=True), held
 
     def _speeds(self, wanted: Array) -> Array:
-        if isinstance(self._space, CartesianSpace):
-            return np.array([min(float(np.linalg.norm(wanted)), self._space.velocity)])
-        return np.minimum(np.abs(wanted), self._space.velocity)
+        space = self._space
+        if isinstance(space, CartesianSpace):
+            tip = float(np.linalg.norm(wanted[space.groups[0].part]))
+            return np.array([min(tip, space.groups[0].velocity), *space.top[1:]])
+        return np.minimum(np.abs(wanted), space.velocity)
 
     def _stop(self, v: Array, ease: float) -> Array:
         """How far a stop from the velocity v carries, under the jerk limit."""
-        speed = float(np.linalg.norm(v))
-        if speed < 1e-12:
-            return np.zeros_like(v)
-        space = self._space
-        acceleration = float(np.min(space.acceleration)) * ease
-        jerk = float(np.min(space.jerk)) * ease**1.5
-        if speed < acceleration * acceleration / jerk:
-            time = 2.0 * float(np.sqrt(speed / jerk))
-        else:
-            time = speed / acceleration + acceleration / jerk
-        return v * (time / 2.0)
+        return np.concatenate(
+            [
+                v[group.part] * (_stop_time(v[group.part], group, ease) / 2.0)
+                for group in self._space.groups
+            ]
+        )
+
+
+def _stop_time(v: Array, group: Group, ease: float) -> float:
+    speed = float(np.linalg.norm(v))
+    if speed < 1e-12:
+        return 0.0
+    acceleration, jerk = group.acceleration * ease, group.jerk * ease**1.5
+    if speed < acceleration * acceleration / jerk:
+        return 2.0 * float(np.sqrt(speed / jerk))
+    return speed / acceleration + acceleration / jerk

@@ -12,14 +12,14 @@ from deltaviz.motion.space import Space
 class Plan:
     """Row 0 is the state it starts from, the last row is at rest. Every segment is as long.
 
-    `theta`, `rate` (K+1, n), `xyz` (K+1, d); `q`, `v`, `a` (K+1, d): the planned motion in its
-    own space. `segment` in s. `braking`: along the joints' tangent, bound by no Cartesian limit.
+    `theta`, `rate`, `pose` (K+1, n); `q`, `v`, `a` (K+1, n): the planned motion in its own space.
+    `segment` in s. `braking`: along the joints' tangent, bound by no Cartesian limit.
     """
 
     space: Space
     theta: Array
     rate: Array
-    xyz: Array
+    pose: Array
     q: Array
     v: Array
     a: Array

@@ -37,6 +37,7 @@ class Planner:
             robot.kernel,
             velocity=np.asarray(joint.velocity, dtype=float) * RESERVE,
             acceleration=np.asarray(joint.acceleration, dtype=float) * RESERVE,
+            tip_axes=len(robot.axes),
             tip_velocity=tip.velocity * TIP_RESERVE,
             tip_acceleration=tip.acceleration * TIP_RESERVE,
         )
@@ -88,7 +89,7 @@ class Planner:
             made = self._with_joints(space, plan, at, rows)
             if made is None:
                 return None
-            verdict = self.check(made.theta, made.rate, made.xyz, made.segment)
+            verdict = self.check(made.theta, made.rate, made.pose, made.segment)
             if verdict.fault is Fault.PATH:
                 self.refused = verdict
                 return None
@@ -126,16 +127,16 @@ class Planner:
         self, space: Space, plan: Plan, at: int, rows: tuple[Array, Array, Array]
     ) -> Plan | None:
         q, v, a = rows
-        theta, rate, xyz = space.knots(q, v)
+        theta, rate, pose = space.knots(q, v)
         if not np.isfinite(rate).all():
             return None
         theta[0], rate[0] = plan.theta[at], plan.rate[at]
-        return Plan(space, theta, rate, xyz, q, v, a, self._period)
+        return Plan(space, theta, rate, pose, q, v, a, self._period)
 
     def in_space(self, plan: Plan, at: int, space: CartesianSpace | JointSpace) -> Plan:
         """The state in row `at` of `plan` as a plan of one row in another space."""
         theta, rate = plan.theta[at], plan.rate[at]
         joints = plan.space.joints(theta, rate, plan.a[at])
         q, v, a = space.state(theta, rate, joints)
-        rows = (theta[None], rate[None], plan.xyz[at][None], q[None], v[None], a[None])
+        rows = (theta[None], rate[None], plan.pose[at][None], q[None], v[None], a[None])
         return Plan(space, *rows, self._period)

@@ -2,8 +2,8 @@
 
 The tip's limits are norms. So a motion of the tip is planned in a frame of its own, whose first
 axis is the way to go, and the limits are shared out over its axes so that their norm holds:
-what goes straight gets all of them and stays straight. Joints have limits of their own and need
-no frame.
+what goes straight gets all of them and stays straight. A tool's turn, and joints, have limits of
+their own and need no frame.
 """
 
 from __future__ import annotations
@@ -28,7 +28,8 @@ class Way:
     """Where to, from a state: `displacement` (d,) to the place, or None: only come to rest.
 
     With `free`, what lies across the way is only brought to rest, not back onto the line.
-    `speed` is the largest velocity: in the Cartesian space a norm, else one number per joint.
+    `speed` is the largest velocity: of the tip a norm, then one number for the tool's turn, if
+    any; of joints one number each.
     """
 
     displacement: Array | None
@@ -39,9 +40,9 @@ class Way:
         """The same way, or as much of it as takes about `seconds` at its speed."""
         if self.displacement is None:
             return self
+        tip = 1 + len(self.displacement) - len(self.speed)
         size = np.abs(self.displacement)
-        if len(self.speed) == 1:
-            size = np.array([np.linalg.norm(size)])
+        size = np.append(np.linalg.norm(size[:tip]), size[tip:])
         time = float(np.max(size / np.maximum(self.speed, 1e-9)))
         return (
             self
@@ -86,18 +87,30 @@ def _tip_request(
 ) -> tuple[Array, Request]:
     moved = way.displacement is not None
     ahead = way.displacement if way.displacement is not None else v
-    axes, here_v, here_a = frame(ahead, v, a)
-    parts = axis_shares(here_v, here_a, space.velocity, space.acceleration)
-    most = np.maximum(np.abs(here_v), ACROSS * space.velocity * shares.velocity)
+    tip, *turns = space.groups
+    axes = np.eye(space.axes)
+    axes[tip.part, tip.part], tip_v, tip_a = frame(ahead[tip.part], v[tip.part], a[tip.part])
+    parts = np.ones(space.axes)
+    parts[tip.part] = axis_shares(tip_v, tip_a, tip.velocity, tip.acceleration)
+    displacement, here_v, here_a = np.zeros(space.axes), v.copy(), a.copy()
+    displacement[tip.part] = _along(ahead[tip.part], moved)
+    here_v[tip.part], here_a[tip.part] = tip_v, tip_a
+    most = np.abs(here_v)
+    most[tip.part] = np.maximum(most[tip.part], ACROSS * tip.velocity * shares.velocity)
     most[0] = float(way.speed[0]) * shares.velocity * HEADROOM
+    acceleration, jerk = parts * tip.acceleration, parts * tip.jerk
+    for turn, speed in zip(turns, way.speed[1:].tolist(), strict=True):
+        displacement[turn.part] = ahead[turn.part] if moved else 0.0
+        most[turn.part] = np.maximum(most[turn.part], speed * shares.velocity * HEADROOM)
+        acceleration[turn.part], jerk[turn.part] = turn.acceleration, turn.jerk
     return axes, Request(
-        displacement=_along(ahead, moved),
+        displacement=displacement,
         velocity=here_v,
         acceleration=here_a,
         held=(moved, *(moved and not way.free,) * (space.axes - 1)),
         max_velocity=np.maximum(most, 1e-3),
-        max_acceleration=parts * (space.acceleration * shares.acceleration * HEADROOM),
-        max_jerk=parts * (space.jerk * shares.acceleration**1.5),
+        max_acceleration=acceleration * (shares.acceleration * HEADROOM),
+        max_jerk=jerk * shares.acceleration**1.5,
         together=False,
     )
 

@@ -10,18 +10,19 @@ from numpy.typing import ArrayLike
 from deltaviz.motion.boundary_compiled import first_illegal
 from deltaviz.motion.followed import Followed
 from deltaviz.motion.held_by import HeldBy
+from deltaviz.robots.coordinates import in_space
 
 SPACING = 0.5  # mm between samples
 MOST = 4000  # samples of one line
 
 
-def check_straight(robot: Followed, xyz_from: ArrayLike, xyz_to: ArrayLike) -> str | None:
-    """Why the tool tip must not go straight from one place (d,) mm to another, or None.
+def check_straight(robot: Followed, pose_from: ArrayLike, pose_to: ArrayLike) -> str | None:
+    """Why the tool must not go straight from one pose (n,) to another (`Robot.pose`), or None.
 
     A robot that starts outside a limit may go where that limit is not violated further.
     """
-    start = np.asarray(xyz_from, dtype=float)
-    end = np.asarray(xyz_to, dtype=float)
+    start = np.asarray(pose_from, dtype=float)
+    end = np.asarray(pose_to, dtype=float)
     if not (np.isfinite(start).all() and np.isfinite(end).all()):
         return "The target must be finite numbers"
     length = float(np.linalg.norm(end - start))
@@ -34,7 +35,8 @@ def check_straight(robot: Followed, xyz_from: ArrayLike, xyz_to: ArrayLike) -> s
     column = int(np.argmin(np.where(np.isnan(margins[bad]), -np.inf, margins[bad])))
     limit = HeldBy(robot).words(robot.margin_names[column])
     why = limit[0].lower() + limit[1:]
-    place = ", ".join(f"{value:.1f}" for value in points[bad])
+    tip = in_space(points[bad][: len(robot.axes)])
+    place = ", ".join(f"{round(value, 1) + 0.0:.1f}" for value in tip)  # + 0.0: no "-0"
     if bad == count - 1:
         return f"The target ({place}) mm is not reachable: {why}"
     return f"The straight way leaves the reachable space at ({place}) mm: {why}"

@@ -187,6 +187,12 @@ class Robot:
         tip travels at its own."""
         return self.limits.cartesian.velocity / self.limits.joint.velocity[-1]
 
+    def pose(self, xyz: ArrayLike, tool: float | None = None) -> Array:
+        """(n,) as the kernel has it: a place of the tip (d,) mm and, with a tool axis, the tool's
+        angle (rad) as travel."""
+        tip = rows(xyz, len(self.axes), "xyz")
+        return tip if not self.tool_axis else np.append(tip, (tool or 0.0) * self.turn_scale)
+
     @cached_property
     def margin_names(self) -> tuple[Margin, ...]:
         """What each column of `margins` tells."""

@@ -118,17 +118,42 @@ def test_from_rest_the_norms_of_the_limits_are_used_up(
     robot: Robot, ahead: tuple[float, ...]
 ) -> None:
     space = CartesianSpace(robot)
+    (limit,) = space.groups
     zero = np.zeros(3)
-    way = Way(np.array(ahead) * 2, np.array([space.velocity]))
+    way = Way(np.array(ahead) * 2, space.top)
     rows = Shaper(space, 0.001)(zero, zero, zero, way, Shares())
     assert rows is not None
     norms = [np.linalg.norm(part, axis=1).max() for part in rows[1:]]
-    assert norms == pytest.approx([space.velocity, space.acceleration], rel=0.01)
+    assert norms == pytest.approx([limit.velocity, limit.acceleration], rel=0.01)
     jerk = np.linalg.norm(np.diff(rows[2], axis=0), axis=1).max() / 0.001
-    assert jerk == pytest.approx(space.jerk, rel=0.01)
+    assert jerk == pytest.approx(limit.jerk, rel=0.01)
+
+
+def test_a_turning_tool_has_limits_of_its_own(tool_robot: Robot) -> None:
+    """Turn and tip together take as long as the slower of them alone, each at its full limits."""
+    space = CartesianSpace(tool_robot)
+    tip, turn = space.groups
+    zero = np.zeros(4)
+    way = np.array([90.0, -60.0, 30.0, 200.0])
+    rows = Shaper(space, 0.001)(zero, zero, zero, Way(way, space.top), Shares())
+    assert rows is not None
+    q, _, a = rows
+    assert q[-1] == pytest.approx(way)
+    assert np.linalg.norm(a[:, :3], axis=1).max() == pytest.approx(tip.acceleration, rel=0.01)
+    assert np.abs(a[:, 3]).max() == pytest.approx(turn.acceleration, rel=0.01)
+    assert np.abs(np.cross(q[:, :3], way[:3])).max() < 1e-6, "the tip stays on its line"
+    alone = [np.where(np.arange(4) < 3, way, 0.0), np.where(np.arange(4) < 3, 0.0, way)]
+    times = []
+    for part in alone:
+        rows = Shaper(space, 0.001)(zero, zero, zero, Way(part, space.top), Shares())
+        assert rows is not None
+        times.append(len(rows[0]))
+    assert len(q) == max(times)
 
 
 def test_a_long_way_is_taken_in_parts() -> None:
+    turning = Way(np.array([30.0, 40.0, 0.0, -80.0]), np.array([10.0, 20.0])).within(2.0)
+    assert turning.displacement == pytest.approx([12.0, 16.0, 0.0, -32.0])
     slow = Way(np.array([30.0, 40.0, 0.0]), np.array([10.0]))
     assert slow.within(5.0) is slow
     part = slow.within(2.0).displacement

@@ -11,7 +11,8 @@ from deltaviz.motion import check
 from deltaviz.motion.check import Fault
 from deltaviz.motion.follower import Follower
 
-PRESETS = ("stm32", "trossen", "zheng2023", "deltadraw")
+PRESETS = ("stm32", "trossen", "zheng2023", "deltadraw", "fivebar")
+ROBOTS = (*PRESETS, "stm32-tool")
 MODES = ("inside", "rim", "edge", "far", "angles", "jog", "turn", "mixed")
 LIMITS = ("joint velocity", "joint acceleration", "tip velocity", "tip acceleration")
 
@@ -19,7 +20,7 @@ Judge = Callable[[str], Callable[[Any], Any]]
 TakeRide = Callable[..., Any]
 
 
-@pytest.mark.parametrize("name", PRESETS)
+@pytest.mark.parametrize("name", ROBOTS)
 @pytest.mark.parametrize("mode", MODES)
 def test_no_limit_is_broken(judge: Judge, take_ride: TakeRide, name: str, mode: str) -> None:
     for seed in range(2):
@@ -27,7 +28,7 @@ def test_no_limit_is_broken(judge: Judge, take_ride: TakeRide, name: str, mode: 
         assert judge(name)(ride).broken == {}
 
 
-@pytest.mark.parametrize("name", PRESETS)
+@pytest.mark.parametrize("name", ROBOTS)
 def test_no_limit_is_broken_when_the_target_jumps_at_every_tick(
     judge: Judge, take_ride: TakeRide, name: str
 ) -> None:
@@ -53,7 +54,7 @@ def test_limits_are_reached(judge: Judge, take_ride: TakeRide, name: str) -> Non
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("name", PRESETS)
+@pytest.mark.parametrize("name", ROBOTS)
 @pytest.mark.parametrize("mode", MODES)
 def test_soak(judge: Judge, take_ride: TakeRide, name: str, mode: str) -> None:
     """Minutes: `pytest -m long tests/motion`."""
@@ -94,9 +95,18 @@ def test_judge_sees_what_each_limit_prevents(
     assert _broken_without(judge, take_ride, "stm32", how, (expected,))
 
 
+PLACES = ("z", "x", "radius", "joint range", "ball joint", "elbow outside")
+
+
+@pytest.mark.parametrize("name", ["zheng2023", "fivebar", "stm32-tool"])
 @pytest.mark.parametrize(("fault", "expected"), [(Fault.PATH, ""), (Fault.BRAKE, "brake: ")])
 def test_judge_sees_what_each_check_of_place_prevents(
-    judge: Judge, take_ride: TakeRide, monkeypatch: pytest.MonkeyPatch, fault: Fault, expected: str
+    judge: Judge,
+    take_ride: TakeRide,
+    monkeypatch: pytest.MonkeyPatch,
+    name: str,
+    fault: Fault,
+    expected: str,
 ) -> None:
     real = check.judge
 
@@ -105,7 +115,6 @@ def test_judge_sees_what_each_check_of_place_prevents(
         return (0, -1) if found == fault else (found, column)
 
     monkeypatch.setattr(check, "judge", blind)
-    places = ("z", "radius", "joint range", "ball joint", "elbow outside")
     how = {"mode": "rim", "ticks": 300}
-    broken = tuple(expected + place for place in places)
-    assert _broken_without(judge, take_ride, "zheng2023", how, broken)
+    broken = tuple(expected + place for place in PLACES)
+    assert _broken_without(judge, take_ride, name, how, broken)

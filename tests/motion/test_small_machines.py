@@ -30,6 +30,10 @@ class Skewed:
         return len(self.matrix)
 
     @property
+    def axes(self) -> tuple[str, ...]:
+        return ("X", "Y", "V", "Z") if self.joints == 4 else ("X", "Z")
+
+    @property
     def margin_names(self) -> tuple[Margin, ...]:
         return ()
 
