@@ -167,7 +167,9 @@ def _fk(options: argparse.Namespace) -> int:
     if not np.isfinite(xyz).all():
         print("deltaviz: with these angles the forearms cannot meet", file=sys.stderr)
         return FAILED
-    _print_values(list(in_space(xyz)), key="xyz_mm", unit="mm", digits=6, as_json=options.json)
+    _print_values(
+        list(in_space(xyz.tolist())), key="xyz_mm", unit="mm", digits=6, as_json=options.json
+    )
     _warn_of_limits(robot.reach(xyz))
     return OK
 

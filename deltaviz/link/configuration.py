@@ -41,10 +41,10 @@ def configure_from(robot: Robot) -> Configure:
         microsteps_per_rad=_floats(per_rad),
         inverted=tuple(robot.drive.invert),
         homing_switch=_microsteps(homing.switch, per_rad),
-        homing_fast=_down([min(homing.fast, top) for top in joint.velocity], per_rad, V_UNIT),
-        homing_slow=_down([min(homing.slow, top) for top in joint.velocity], per_rad, V_UNIT),
-        homing_backoff=_microsteps([homing.backoff] * len(per_rad), per_rad),
-        homing_max_travel=_microsteps([homing.max_travel] * len(per_rad), per_rad),
+        homing_fast=_down(map(min, homing.fast, joint.velocity), per_rad, V_UNIT),
+        homing_slow=_down(map(min, homing.slow, joint.velocity), per_rad, V_UNIT),
+        homing_backoff=_microsteps(homing.backoff, per_rad),
+        homing_max_travel=_microsteps(homing.max_travel, per_rad),
         ready=ready,
         workspace_x=_range(workspace.x),
         workspace_y=_range(workspace.y),
@@ -74,15 +74,15 @@ def _options(robot: Robot) -> Options:
 def _kind(robot: Robot) -> RobotKind:
     from deltaviz.mechanism import RotaryDelta
 
-    delta = isinstance(robot.mechanism, RotaryDelta)
-    return RobotKind.ROTARY_DELTA if delta else RobotKind.JOINTS_ONLY
+    known = isinstance(robot.mechanism, RotaryDelta) and not robot.tool_axis
+    return RobotKind.ROTARY_DELTA if known else RobotKind.JOINTS_ONLY
 
 
 def _geometry(robot: Robot) -> dict[str, tuple[float, ...]]:
     from deltaviz.mechanism import RotaryDelta
 
     arms = robot.mechanism
-    if not isinstance(arms, RotaryDelta):
+    if not isinstance(arms, RotaryDelta) or robot.tool_axis:
         names = ("base_radius", "effector_radius", "upper_arm", "forearm", "azimuth")
         none = (0.0,) * robot.joint_count
         return dict.fromkeys(names, none) | {"tool_offset": (0.0,) * 3}

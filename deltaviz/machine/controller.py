@@ -143,8 +143,10 @@ class Controller(Core):
         session = self._session
         theta = session.theta if session is not None and session.homed else None
         xyz = None if theta is None else tip(self.robot, theta)
-        unknown = tuple(math.nan for _ in self.robot.homing.ready)
-        return Pose(xyz or unknown, theta or unknown)
+        return Pose(
+            xyz or (math.nan,) * len(self.robot.axes),
+            theta or (math.nan,) * self.robot.joint_count,
+        )
 
     def _jog_beat(self, beat: i.JogBeat) -> i.Answer:
         if not self._presses.jog_beat(beat):

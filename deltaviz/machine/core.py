@@ -335,10 +335,12 @@ _FOLLOWS = frozenset({Mode.JOGGING, Mode.MOVING, Mode.RUNNING, Mode.PAUSED})
 def _short_of(activity: Activity, drive: Drive) -> str | None:
     """How far the command is from the activity's target, or None when it is there."""
     goal, follower = activity.goal, drive.follower
+    angle = 0.0
     if isinstance(goal, ToPoint):
         distance = math.dist(goal.xyz, follower.xyz)
-        return None if distance <= ARRIVED_XYZ else f"{distance:.2f} mm"
-    if isinstance(goal, ToAngles):
+        if distance > ARRIVED_XYZ:
+            return f"{distance:.2f} mm"
+        angle = 0.0 if goal.tool is None else abs(goal.tool - follower.theta[-1])
+    elif isinstance(goal, ToAngles):
         angle = max(abs(a - b) for a, b in zip(goal.theta, follower.theta, strict=True))
-        return None if angle <= ARRIVED_THETA else f"{math.degrees(angle):.2f}°"
-    return None
+    return None if angle <= ARRIVED_THETA else f"{math.degrees(angle):.2f}°"

@@ -24,6 +24,7 @@ class Creep:
         self.theta = tuple(theta)
         self.velocity = tuple(0.0 for _ in theta)
         self._period = period
+        self._axes = len(robot.axes)
         self._fastest = tuple(robot.limits.joint.unhomed_velocity)
         self._step = tuple(a * GENTLY * period for a in robot.limits.joint.acceleration)
 
@@ -38,7 +39,7 @@ class Creep:
     @property
     def xyz(self) -> tuple[float, ...]:
         """Unknown."""
-        return tuple(math.nan for _ in self.theta)
+        return (math.nan,) * self._axes
 
     target_xyz = xyz
 

@@ -51,11 +51,10 @@ def warm_up(robot: Robot) -> None:
     robot.kernel.warm_up()
     ready = robot.homing.ready
     follower, guard = make_follower(robot, ready), Guard(robot, ready, homed=True)
-    still = tuple(0.0 for _ in ready)
-    moves = tuple(1.0 for _ in ready)
+    still, moves = (0.0,) * len(robot.axes), (1.0,) * len(robot.axes)
     for goal in (
         AtVelocity(moves),
-        AtJointVelocity(moves),
+        AtJointVelocity((1.0,) * robot.joint_count),
         ToPoint(tuple(v + 1.0 for v in follower.xyz)),
         ToAngles(ready),
         AtVelocity(still),

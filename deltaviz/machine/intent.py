@@ -64,11 +64,15 @@ class EStop:
 
 @dataclass(frozen=True, slots=True)
 class MoveToPoint:
-    """Straight to a tool tip position (mm), or refused before anything moves."""
+    """Straight to a tool tip position (mm), or refused before anything moves.
+
+    `tool` is the angle (rad) to which a tool that turns turns on the way; None: as it stands.
+    """
 
     client: str
     xyz: tuple[float, ...]
     speed: float
+    tool: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

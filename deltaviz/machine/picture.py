@@ -24,7 +24,8 @@ def finite(values: Sequence[float]) -> tuple[float, ...] | None:
 
 def tip(robot: Robot, theta: Sequence[float]) -> tuple[float, ...] | None:
     """The tool tip (mm) at `theta` (rad), or None where there is none."""
-    return finite(robot.kernel.forward(np.array([theta], dtype=np.float64))[0].tolist())
+    pose = robot.kernel.forward(np.array([theta], dtype=np.float64))[0]
+    return finite(pose[: len(robot.axes)].tolist())
 
 
 def joint_margins(
@@ -34,8 +35,9 @@ def joint_margins(
     nearest = [OPEN] * robot.joint_count
     if xyz is None:
         return tuple(0.0 for _ in nearest)
-    pose = np.array([theta], dtype=np.float64)
-    margins = robot.kernel.margins(np.array([xyz], dtype=np.float64), pose)[0].tolist()
+    pose = robot.pose(xyz, theta[-1])[None, :]
+    angles = np.array([theta], dtype=np.float64)
+    margins = robot.kernel.margins(pose, angles)[0].tolist()
     for limit, margin in zip(robot.margin_names, margins, strict=True):
         if limit.arm is not None:
             nearest[limit.arm] = min(nearest[limit.arm], margin)
@@ -94,10 +96,10 @@ class Speedometer:
         rates = self.joints()
         if rates is None:
             return None
-        kernel = self._robot.kernel
-        velocity = kernel.tip_velocity(
-            np.array([xyz], dtype=np.float64),
-            np.array([self._seen[-1][1]], dtype=np.float64),
+        robot, theta = self._robot, self._seen[-1][1]
+        velocity = robot.kernel.tip_velocity(
+            robot.pose(xyz, theta[-1])[None, :],
+            np.array([theta], dtype=np.float64),
             np.array([rates], dtype=np.float64),
         )
-        return finite(velocity[0].tolist())
+        return finite(velocity[0][: len(robot.axes)].tolist())

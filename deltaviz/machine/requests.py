@@ -70,35 +70,39 @@ def activity_for(
         case i.FollowPoint():
             return Activity(Kind.FOLLOW, client, drag_goal(intent.xyz, robot))
         case i.FollowAngles():
-            _check_vector(intent.theta, robot, "angles")
+            _check_angles(intent.theta, robot)
             _check_joints(intent.theta, robot)
             return Activity(Kind.FOLLOW, client, ToAngles(intent.theta))
         case i.StepPoint():
-            _check_vector(intent.xyz, robot, "coordinates")
+            _check_coordinates(intent.xyz, robot)
             goal = _point_step(intent, robot, pose, running)
             return Activity(Kind.STEP, client, goal)
         case i.StepAngles():
-            _check_vector(intent.theta, robot, "angles")
+            _check_angles(intent.theta, robot)
             goal = _angle_step(intent, robot, pose, running)
             return Activity(Kind.STEP, client, goal)
         case i.MoveToPoint():
-            _check_vector(intent.xyz, robot, "coordinates")
-            return Activity(Kind.MOVE, client, _to_point(intent.xyz, intent.speed, robot, pose))
+            _check_coordinates(intent.xyz, robot)
+            goal = _to_point(intent.xyz, intent.speed, robot, pose, tool=intent.tool)
+            return Activity(Kind.MOVE, client, goal)
         case i.MoveToAngles():
-            _check_vector(intent.theta, robot, "angles")
+            _check_angles(intent.theta, robot)
             goal = _to_angles(intent.theta, intent.speed, robot, pose)
             return Activity(Kind.MOVE, client, goal)
 
 
 def jog_goal(frame: i.JogFrame, velocity: tuple[float, ...], robot: Robot) -> Goal:
     """Raises BadValue for a velocity of another size, or not finite."""
-    _check_vector(velocity, robot, "velocities")
-    return AtJointVelocity(velocity) if frame is i.JogFrame.JOINTS else AtVelocity(velocity)
+    if frame is i.JogFrame.JOINTS:
+        _check_angles(velocity, robot)
+        return AtJointVelocity(velocity)
+    _check_coordinates(velocity, robot)
+    return AtVelocity(velocity)
 
 
 def drag_goal(xyz: tuple[float, ...], robot: Robot) -> Goal:
     """Out of reach is no error: the robot slides along its limits towards it."""
-    _check_vector(xyz, robot, "coordinates")
+    _check_coordinates(xyz, robot)
     return ToPoint(xyz)
 
 
@@ -118,15 +122,21 @@ def _angle_step(intent: i.StepAngles, robot: Robot, pose: Pose, running: Activit
     return _to_angles(target, intent.speed, robot, pose)
 
 
-def _to_point(xyz: tuple[float, ...], speed: float, robot: Robot, pose: Pose) -> Goal:
+def _to_point(
+    xyz: tuple[float, ...], speed: float, robot: Robot, pose: Pose, *, tool: float | None = None
+) -> Goal:
     _check_speed(speed)
+    if tool is not None:
+        _check_tool(tool, robot)
     reach = robot.reach(xyz)
     if not reach.legal:
         raise BadValue(str(reach))
-    on_the_way = check_straight(robot, pose.xyz, xyz)
+    here = pose.theta[-1]
+    start, end = robot.pose(pose.xyz, here), robot.pose(xyz, here if tool is None else tool)
+    on_the_way = check_straight(robot, start, end)
     if on_the_way is not None:
         raise BadValue(f"{on_the_way}.")
-    return ToPoint(xyz, speed=speed, slide=False)
+    return ToPoint(xyz, speed=speed, slide=False, tool=tool)
 
 
 def _to_angles(theta: tuple[float, ...], speed: float, robot: Robot, pose: Pose) -> Goal:
@@ -144,17 +154,25 @@ def _check_way(theta: tuple[float, ...], robot: Robot, pose: Pose) -> str | None
     count = 2 + math.ceil(float(np.abs(end - start).max()) / SAMPLE)
     way = start + np.linspace(0.0, 1.0, count)[:, None] * (end - start)
     kernel = robot.kernel
-    xyz = kernel.forward(way)
-    if not np.all(np.abs(kernel.inverse(xyz) - way) < 1e-6):
+    poses = kernel.forward(way)
+    if not np.all(np.abs(kernel.inverse(poses) - way) < 1e-6):
         return "the arms would have to change over, or the forearms cannot meet"
-    margins = kernel.margins(xyz, way)
+    margins = kernel.margins(poses, way)
     _, columns = np.nonzero(margins < np.minimum(margins[0], 0.0) - SLACK)
     return None if len(columns) == 0 else str(robot.margin_names[int(columns[0])])
 
 
-def _check_vector(values: Sequence[float], robot: Robot, what: str) -> None:
-    if len(values) != robot.joint_count:
-        raise BadValue(f"{len(values)} {what} given; {robot.name} takes {robot.joint_count}.")
+def _check_angles(values: Sequence[float], robot: Robot) -> None:
+    _check_vector(values, robot, "one for each joint", robot.joint_count)
+
+
+def _check_coordinates(values: Sequence[float], robot: Robot) -> None:
+    _check_vector(values, robot, ", ".join(robot.axes), len(robot.axes))
+
+
+def _check_vector(values: Sequence[float], robot: Robot, what: str, count: int) -> None:
+    if len(values) != count:
+        raise BadValue(f"{len(values)} numbers given; {robot.name} takes {count}: {what}.")
     if not all(map(math.isfinite, values)):
         raise BadValue(f"Values must be finite numbers, not {tuple(values)}.")
 
@@ -165,10 +183,21 @@ def _check_speed(speed: float) -> None:
 
 
 def _check_joints(theta: Sequence[float], robot: Robot) -> None:
+    arms = robot.mechanism.joints
     for joint, angle in enumerate(theta):
-        low, high = robot.joints.min[joint], robot.joints.max[joint]
-        if not low - 1e-9 <= angle <= high + 1e-9:
-            raise BadValue(
-                f"Arm {joint + 1} would stand at {math.degrees(angle):.2f}°; its limits are "
-                f"{math.degrees(low):g}° and {math.degrees(high):g}°."
-            )
+        _check_joint(angle, joint, robot, f"Arm {joint + 1}" if joint < arms else "The tool")
+
+
+def _check_tool(angle: float, robot: Robot) -> None:
+    if not robot.tool_axis:
+        raise BadValue(f"{robot.name} has no tool that turns.")
+    _check_joint(angle, robot.joint_count - 1, robot, "The tool")
+
+
+def _check_joint(angle: float, joint: int, robot: Robot, who: str) -> None:
+    low, high = robot.joints.min[joint], robot.joints.max[joint]
+    if not low - 1e-9 <= angle <= high + 1e-9:
+        raise BadValue(
+            f"{who} would stand at {math.degrees(angle):.2f}°; its limits are "
+            f"{math.degrees(low):g}° and {math.degrees(high):g}°."
+        )

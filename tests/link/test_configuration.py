@@ -16,7 +16,7 @@ from deltaviz.link.configuration import configuration_hash, configure_from
 from deltaviz.link.messages import BoardState, Configured, Options, RobotKind
 from deltaviz.link.wire.codec import decode_host, encode
 
-PRESETS = ["stm32", "trossen", "zheng2023", "deltadraw"]
+PRESETS = ["stm32", "trossen", "zheng2023", "deltadraw", "fivebar"]
 
 
 @pytest.mark.parametrize("name", PRESETS)
@@ -101,7 +101,9 @@ def test_it_says_what_the_robot_file_says():
     assert configure.acceleration[0] * 1e6 / 2**24 / per_rad == pytest.approx(
         robot.limits.joint.acceleration[0], rel=1e-4
     )
-    assert configure.homing_fast[0] / 65.536 / per_rad == pytest.approx(robot.homing.fast, rel=1e-3)
+    assert configure.homing_fast[0] / 65.536 / per_rad == pytest.approx(
+        robot.homing.fast[0], rel=1e-3
+    )
     assert configure.options == Options.HOMING_TOGETHER | Options.SWITCH_ACTIVE_OPEN
     assert configure.workspace_radius == robot.workspace.radius
     assert configure.workspace_x == (-inf, inf)
@@ -122,4 +124,6 @@ def test_a_ready_pose_at_the_joint_limit_is_inside_it():
 
 
 def test_presets_differ():
-    assert len({configuration_hash(configure_from(load_robot(name))) for name in PRESETS}) == 4
+    assert len({configuration_hash(configure_from(load_robot(name))) for name in PRESETS}) == len(
+        PRESETS
+    )

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -23,6 +25,7 @@ from deltaviz.mechanism.margin import Margin, MarginKind
 from deltaviz.motion import Follower
 from deltaviz.robots import Robot, load_robot
 
+EXAMPLES = Path(__file__).parents[2] / "docs" / "examples"
 STEP = 0.002  # s between turns of the loop
 ME = "me"
 
@@ -198,6 +201,17 @@ def stm32() -> Robot:
     return load_robot("stm32")
 
 
+@pytest.fixture(scope="session")
+def named_robot() -> Callable[[str], Robot]:
+    """A preset, or "stm32-tool": the one with a tool that turns."""
+
+    @cache
+    def load(name: str) -> Robot:
+        return load_robot(EXAMPLES / f"{name}.toml" if name == "stm32-tool" else name)
+
+    return load
+
+
 @pytest.fixture
 def make_follower() -> FollowerMaker:
     return steady_follower
@@ -258,6 +272,9 @@ def slides(joints: int) -> Robot:
         mechanism=SimpleNamespace(joints=joints),
         tool_offset=each(0.0),
         joint_count=joints,
+        axes=("X", "Y", "Z", "U")[:joints],
+        tool_axis=False,
+        pose=lambda xyz, tool=None: np.asarray(xyz, dtype=float),
         joints=replace(base.joints, min=each(-1.0), max=each(1.0)),
         workspace=SimpleNamespace(z=None, radius=None, x=None, y=None),
         limits=replace(
@@ -270,7 +287,15 @@ def slides(joints: int) -> Robot:
             ),
         ),
         drive=replace(base.drive, microsteps_per_rad=each(509.3), invert=each(False)),
-        homing=replace(base.homing, switch=each(-1.2), ready=each(0.0), fast=2.0, slow=0.5),
+        homing=replace(
+            base.homing,
+            switch=each(-1.2),
+            ready=each(0.0),
+            fast=each(2.0),
+            slow=each(0.5),
+            backoff=each(base.homing.backoff[0]),
+            max_travel=each(base.homing.max_travel[0]),
+        ),
         kernel=kernel,
         margin_names=tuple(
             Margin(kind, arm)

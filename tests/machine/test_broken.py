@@ -28,28 +28,37 @@ def drag_alive(bench: Any) -> None:
     bench.do(i.DragAlive(ME, round(ms), ms, bench.now))
 
 
+def along_x(bench: Any, x: float) -> tuple[float, ...]:
+    """A vector of the robot's own axes."""
+    return (x, *(0.0,) * (len(bench.robot.axes) - 1))
+
+
+def beside(bench: Any) -> tuple[float, ...]:
+    x, *others, z = bench.snapshot.xyz
+    return (x + 80.0, *others, z - 20.0)
+
+
 def jogging(bench: Any) -> None:
-    bench.jog(FAST, 0.15)
+    bench.jog(along_x(bench, 300.0), 0.15)
 
 
 def stepping(bench: Any) -> None:
-    assert bench.do(i.StepPoint(ME, (80.0, 0.0, 0.0))) == ACCEPTED
+    assert bench.do(i.StepPoint(ME, along_x(bench, 80.0))) == ACCEPTED
 
 
 def dragging(bench: Any) -> None:
-    x, y, z = bench.snapshot.xyz
     drag_alive(bench)
     assert bench.do(i.DragStart(ME, bench.now)) == ACCEPTED
-    assert bench.do(i.DragTo(ME, (x + 80.0, y, z), bench.now)) == ACCEPTED
+    assert bench.do(i.DragTo(ME, beside(bench), bench.now)) == ACCEPTED
 
 
 def sliding(bench: Any) -> None:
-    assert bench.do(i.FollowAngles(ME, (0.6, 0.1, 0.1))) == ACCEPTED
+    theta = [angle + 0.1 for angle in bench.snapshot.theta]
+    assert bench.do(i.FollowAngles(ME, (theta[0] + 0.5, *theta[1:]))) == ACCEPTED
 
 
 def moving(bench: Any) -> None:
-    x, y, z = bench.snapshot.xyz
-    assert bench.do(i.MoveToPoint(ME, (x + 80.0, y, z), 1.0)) == ACCEPTED
+    assert bench.do(i.MoveToPoint(ME, beside(bench), 1.0)) == ACCEPTED
 
 
 def homing(bench: Any) -> None:
@@ -57,14 +66,30 @@ def homing(bench: Any) -> None:
     bench.run(0.5)
 
 
-WAYS = [jogging, stepping, dragging, sliding, moving, homing]
+def turning_the_tool(bench: Any) -> None:
+    rates = (0.0, 0.0, 0.0, 8.0)
+    assert bench.do(i.JogStart(ME, "p", i.JogFrame.JOINTS, rates, bench.now)) == ACCEPTED
+    bench.hold(rates, 0.15)
 
 
-@pytest.fixture(params=WAYS, ids=lambda way: way.__name__)
-def in_motion(request: pytest.FixtureRequest, bench: Any) -> Any:
+def moving_with_a_turn(bench: Any) -> None:
+    assert bench.do(i.MoveToPoint(ME, beside(bench), 1.0, tool=2.5)) == ACCEPTED
+
+
+WAYS = [
+    *(("stm32", way) for way in (jogging, stepping, dragging, sliding, moving, homing)),
+    *(("fivebar", way) for way in (jogging, stepping, dragging, sliding, moving, homing)),
+    *(("stm32-tool", way) for way in (turning_the_tool, moving_with_a_turn, homing)),
+]
+
+
+@pytest.fixture(params=WAYS, ids=lambda way: f"{way[0]} {way[1].__name__}")
+def in_motion(request: pytest.FixtureRequest, make_bench: Any, named_robot: Any) -> Any:
     """A bench in the middle of each way of moving, for a page that has said it is here."""
+    name, way = request.param
+    bench = make_bench(named_robot(name))
     bench.do(i.ClientHere(ME))
-    request.param(bench)
+    way(bench)
     bench.run(0.1)
     assert bench.board.moving
     return bench
@@ -96,7 +121,7 @@ def test_the_plug_is_pulled(in_motion: Any) -> None:
     assert bench.mode in (Mode.IDLE, Mode.UNHOMED)
     assert_stays(bench)
     if bench.mode is Mode.IDLE:  # the board never lost its counts
-        bench.jog((-30.0, 0.0, 0.0), 0.2, press="fresh")
+        bench.jog(along_x(bench, -30.0), 0.2, press="fresh")
         assert bench.board.moving
         epochs = [x.epoch for x in bench.sent if isinstance(x, m.Arm)]
         assert len(set(epochs)) == len(epochs), "no epoch twice"
@@ -147,10 +172,9 @@ def test_a_stop_from_another_page(in_motion: Any) -> None:
     bench.run(0.02)
     assert bench.mode in AT_REST
     assert bench.snapshot.stop_reason == "Stop pressed"
-    x, y, z = bench.snapshot.xyz or (0.0, 0.0, -300.0)
     drag_alive(bench)
-    assert isinstance(bench.beat(FAST), i.Refused)
-    assert isinstance(bench.do(i.DragTo(ME, (x + 5, y, z), bench.now)), i.Refused)
+    assert isinstance(bench.beat(along_x(bench, 300.0)), i.Refused)
+    assert isinstance(bench.do(i.DragTo(ME, along_x(bench, 5.0), bench.now)), i.Refused)
     assert_stays(bench)
 
 
