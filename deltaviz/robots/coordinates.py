@@ -17,6 +17,10 @@ class CoordinateError(ValueError):
     """A place that is not in the robot's plane; the text is for a person."""
 
 
+def is_planar(robot: Robot) -> bool:
+    return "Y" not in robot.axes
+
+
 def in_robot(robot: Robot, xyz: Sequence[float]) -> tuple[float, ...]:
     """The robot's own of three coordinates. Raises CoordinateError."""
     for axis, value in zip(SPACE, xyz, strict=True):

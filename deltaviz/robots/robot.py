@@ -133,6 +133,12 @@ class Robot:
         """The coordinates of the tool tip, in their order: X, Y, Z, or X, Z in a plane."""
         return self.mechanism.axes
 
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """For a person: θ1, θ2, .. and Tool."""
+        arms = tuple(f"θ{arm + 1}" for arm in range(self.mechanism.joints))
+        return (*arms, "Tool") if self.tool_axis else arms
+
     def inverse(self, xyz: ArrayLike) -> Array:
         """Joint angles (..., n) rad of tool tip positions (..., d) mm; NaN rows out of reach.
 

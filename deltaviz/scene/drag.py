@@ -19,6 +19,7 @@ from viser._messages import DragButton, KeyModifier
 from deltaviz.machine.intent import Answer, DragEnd, DragStart, DragTo, Refused
 from deltaviz.machine.port import MachinePort
 from deltaviz.machine.snapshot import Snapshot
+from deltaviz.robots.coordinates import in_robot, in_space, is_planar
 from deltaviz.scene.listener import SESSION
 from deltaviz.scene.pointer import Eye, Grip
 from deltaviz.scene.units import metres, millimetres
@@ -87,7 +88,7 @@ class Dragging:
         if tip is None:
             self._tell(session, "The robot's position is not known.")
             return
-        grip = Grip(grabbed=np.asarray(event.start_position), tip=metres(tip))
+        grip = Grip(grabbed=np.asarray(event.start_position), tip=metres(in_space(tip)))
         drag = _Drag(client_id=event.client_id, vertical=vertical, grip=grip, target=grip.tip)
         if (before := self._just_ended(session, event.client_id)) is not None:
             # Shift changed under a held pointer: go on from where the last segment pointed,
@@ -99,14 +100,16 @@ class Dragging:
         self._post(session, drag, DragStart(client=session, at=self._clock()))
 
     def _follow(self, session: str, drag: _Drag, event: SceneNodeDragEvent) -> None:  # type: ignore[type-arg]
-        eye = eye_of(event.client.camera)
-        cast = drag.grip.along_vertical if drag.vertical else drag.grip.over_plane
-        target = cast(eye, event.end_screen_pos)
+        robot = self._machine.robot
+        cast = drag.grip.in_plane if is_planar(robot) else drag.grip.over_plane
+        if drag.vertical:
+            cast = drag.grip.along_vertical
+        target = cast(eye_of(event.client.camera), event.end_screen_pos)
         if target is None:
             return
         drag.target = target
-        x, y, z = millimetres(target).tolist()
-        self._post(session, drag, DragTo(client=session, xyz=(x, y, z), at=self._clock()))
+        xyz = in_robot(robot, millimetres(target).tolist())
+        self._post(session, drag, DragTo(client=session, xyz=xyz, at=self._clock()))
 
     def _end(self, session: str, drag: _Drag) -> None:
         drag.ended_at = self._clock()

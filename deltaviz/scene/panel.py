@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from itertools import zip_longest
 
 import viser
 from viser import GuiDropdownHandle, GuiEvent
@@ -19,7 +20,6 @@ from deltaviz.scene.listener import SESSION
 from deltaviz.scene.sliders import Scale, Sliders
 
 WIDTH = 288.0
-_AXES = ("X", "Y", "Z")
 
 
 class Panel:
@@ -36,23 +36,19 @@ class Panel:
         self._gui = server.gui
         self._controls = controls
         self._post = post
+        self._robot = robot
         self._gui.configure_theme(show_logo=False, show_share_button=False, control_width="small")
         self._gui.set_panel_label("Target")
         self._gui.main_panel.dock_left()
         self._gui.main_panel.set_width(WIDTH)
         self._angles_folder = self._gui.add_folder("Angles")
-        self._angles = self._angle_sliders(robot)
-        self._position = Sliders(
-            self._gui,
-            self._gui.add_folder("Position"),
-            controls,
-            _position_scales(robot),
-            self._ask_for_point,
-        )
+        self._angles = self._angle_sliders(_angle_scales(robot))
+        self._position_folder = self._gui.add_folder("Position")
+        self._position = self._position_sliders(_position_scales(robot))
         self.display_folder = self._gui.add_folder("Display", expand_by_default=False)
         with self._gui.add_folder("Robot"):
             self._choice = self._robot_choice(robot)
-            self._readout = self._gui.add_html(_readout(None))
+            self._readout = self._gui.add_html(_readout(robot, None))
 
     @property
     def steering(self) -> list[viser.GuiInputHandle[float] | GuiDropdownHandle[str]]:
@@ -60,13 +56,12 @@ class Panel:
         return [*self._angles.handles, *self._position.handles, self._choice]
 
     def set_robot(self, robot: Robot) -> None:
-        """Another robot: other ranges, and perhaps another number of joints."""
-        if len(self._angles) == robot.joint_count:
-            self._angles.set_ranges(_angle_scales(robot))
-        else:
-            self._angles.remove()
-            self._angles = self._angle_sliders(robot)
-        self._position.set_ranges(_position_scales(robot))
+        """Another robot: other ranges, and perhaps another number of joints or axes."""
+        self._robot = robot
+        self._angles = self._fitted(self._angles, _angle_scales(robot), self._angle_sliders)
+        self._position = self._fitted(
+            self._position, _position_scales(robot), self._position_sliders
+        )
         if robot.name not in self._choice.options:
             self._choice.options = (*self._choice.options, robot.name)
         self._choice.value = robot.name
@@ -81,11 +76,24 @@ class Panel:
             self._position.show(xyz)
         if self._choice.value != snapshot.robot and snapshot.robot in self._choice.options:
             self._choice.value = snapshot.robot  # a choice that was refused
-        self._readout.content = _readout(snapshot)
+        self._readout.content = _readout(self._robot, snapshot)
 
-    def _angle_sliders(self, robot: Robot) -> Sliders:
-        scales = _angle_scales(robot)
+    def _fitted(
+        self, sliders: Sliders, scales: list[Scale], make: Callable[[list[Scale]], Sliders]
+    ) -> Sliders:
+        """The same sliders with other ranges, or others where the labels differ."""
+        if sliders.labels == [scale.label for scale in scales]:
+            sliders.set_ranges(scales)
+            return sliders
+        sliders.remove()
+        return make(scales)
+
+    def _angle_sliders(self, scales: list[Scale]) -> Sliders:
         return Sliders(self._gui, self._angles_folder, self._controls, scales, self._ask_for_angles)
+
+    def _position_sliders(self, scales: list[Scale]) -> Sliders:
+        folder = self._position_folder
+        return Sliders(self._gui, folder, self._controls, scales, self._ask_for_point)
 
     def _robot_choice(self, robot: Robot) -> GuiDropdownHandle[str]:
         names = list(preset_names())
@@ -111,33 +119,32 @@ class Panel:
 
 
 def _angle_scales(robot: Robot) -> list[Scale]:
-    return [
-        Scale(f"θ{i + 1} °", math.degrees(low), math.degrees(high))
-        for i, (low, high) in enumerate(zip(robot.joints.min, robot.joints.max, strict=True))
-    ]
+    ranges = zip(robot.joint_names, robot.joints.min, robot.joints.max, strict=True)
+    return [Scale(f"{name} °", math.degrees(low), math.degrees(high)) for name, low, high in ranges]
 
 
 def _position_scales(robot: Robot) -> list[Scale]:
     workspace = robot.workspace
     radius = workspace.radius
     across = (-radius, radius) if radius is not None else (0.0, 0.0)
-    ranges = (workspace.x or across, workspace.y or across, workspace.z)
+    ranges = {"X": workspace.x or across, "Y": workspace.y or across, "Z": workspace.z}
     return [
         Scale(f"{axis} mm", float(low), float(high))
-        for axis, (low, high) in zip(_AXES, ranges, strict=True)
+        for axis, (low, high) in ((axis, ranges[axis]) for axis in robot.axes)
     ]
 
 
-def _readout(snapshot: Snapshot | None) -> str:
+def _readout(robot: Robot, snapshot: Snapshot | None) -> str:
     """The reported pose; for steppers it is counted, not measured."""
     rows: list[tuple[str, str]] = []
     if snapshot is not None and snapshot.xyz is not None and snapshot.theta is not None:
-        rows += [(f"{a} mm", f"{v:.1f}") for a, v in zip(_AXES, snapshot.xyz, strict=False)]
-        rows += [(f"θ{i + 1} °", f"{math.degrees(v):.1f}") for i, v in enumerate(snapshot.theta)]
+        rows += [(f"{a} mm", f"{v:.1f}") for a, v in zip(robot.axes, snapshot.xyz, strict=False)]
+        angles = zip(robot.joint_names, snapshot.theta, strict=False)
+        rows += [(f"{name} °", f"{math.degrees(v):.1f}") for name, v in angles]
     half = (len(rows) + 1) // 2
     cells = "".join(
         "<tr>" + "".join(f"<td>{name}</td>{_NUMBER}{value}</td>" for name, value in pair) + "</tr>"
-        for pair in zip(rows[:half], rows[half:], strict=False)
+        for pair in zip_longest(rows[:half], rows[half:], fillvalue=("", ""))
     )
     body = f"<table style='width:100%'>{cells}</table>" if rows else "Not known."
     return (

@@ -1,7 +1,8 @@
 """From a pointer on the screen to a place in the scene: pure ray maths, in metres.
 
 A drag follows the pointer over the horizontal plane at the height where the robot was
-grabbed, or with Shift along the vertical line through that place.
+grabbed, or with Shift along the vertical line through that place. A planar robot is dragged in
+its own plane.
 """
 
 from __future__ import annotations
@@ -64,6 +65,15 @@ class Grip:
             return None
         x, y, _ = hit - self.grabbed
         return self.tip + np.array((x, y, 0.0))
+
+    def in_plane(self, eye: Eye, screen: Screen) -> Array | None:
+        """The tip when the grabbed place lies under the pointer in the plane of x and z; None
+        when the camera looks along that plane."""
+        hit = _hit(eye, screen, self.grabbed, np.array((0.0, 1.0, 0.0)))
+        if hit is None:
+            return None
+        x, _, z = hit - self.grabbed
+        return self.tip + np.array((x, 0.0, z))
 
     def along_vertical(self, eye: Eye, screen: Screen) -> Array | None:
         """The tip when the grabbed place is as high as the pointer, on its own vertical line;

@@ -7,8 +7,9 @@ from typing import Protocol
 
 import viser
 
-from deltaviz.mechanism import RotaryDelta
+from deltaviz.mechanism import FiveBar, RotaryDelta
 from deltaviz.robots import Robot
+from deltaviz.scene.five_bar_model import FiveBarModel
 from deltaviz.scene.rotary_delta_model import RotaryDeltaModel
 
 Joints = tuple[float, ...]
@@ -26,7 +27,7 @@ class RobotModel(Protocol):
     """What the sizes of its parts are made from, in metres."""
 
     def show(self, theta: Joints, xyz: tuple[float, ...]) -> None:
-        """The reported pose: rad, and the tool tip in mm."""
+        """The reported pose: rad, and the tool tip in mm, in the robot's own coordinates."""
         ...
 
     def show_target(self, theta: Joints | None, xyz: tuple[float, ...] | None) -> None:
@@ -46,6 +47,7 @@ class RobotModel(Protocol):
 
 _MODELS: dict[type, Callable[[viser.SceneApi, Robot], RobotModel]] = {
     RotaryDelta: RotaryDeltaModel,
+    FiveBar: FiveBarModel,
 }
 
 

@@ -97,6 +97,15 @@ def beam(length: float, root: tuple[float, float], tip: tuple[float, float]) -> 
     return joined(body, root_end, tip_end)
 
 
+def block(x: tuple[float, float], y: tuple[float, float], z: tuple[float, float]) -> Shape:
+    """A box between two coordinates on each axis."""
+    corners = np.array([(x[0], y[0]), (x[1], y[0]), (x[1], y[1]), (x[0], y[1])])
+    around = np.repeat(corners, 2, axis=0)  # twice, so that the edges stay crisp
+    bottom, top = (np.column_stack((around, np.full(8, height))) for height in z)
+    ends = [np.tile((sum(x) / 2, sum(y) / 2, height), (8, 1)) for height in z]
+    return loft([ends[0], bottom, top, ends[1]])
+
+
 def plate(outline: Array, hole: float, z_from: float, z_to: float, *, bevel: float = 0.0) -> Shape:
     """A plate with a round hole. `outline` holds radii over equal angles from +x, (k,)."""
     angles = np.linspace(0.0, 2 * math.pi, len(outline), endpoint=False)

@@ -71,6 +71,10 @@ class Sliders:
             self.handles = [self._add(gui, i, scale) for i, scale in enumerate(scales)]
         self._wish = Wish([handle.value for handle in self.handles])
 
+    @property
+    def labels(self) -> list[str]:
+        return [handle.label for handle in self.handles]
+
     def __len__(self) -> int:
         return len(self.handles)
 

@@ -8,6 +8,7 @@ import numpy as np
 import viser
 
 from deltaviz.robots import Robot
+from deltaviz.robots.coordinates import is_planar
 from deltaviz.scene import colours, framing
 from deltaviz.scene.robot_model import RobotModel
 from deltaviz.scene.units import metres
@@ -61,6 +62,7 @@ class Stage:
         view = framing.frame(
             reach=model.reach,
             depth=(float(metres(robot.workspace.z[0])), float(metres(robot.workspace.z[1]))),
+            planar=is_planar(robot),
         )
         cell = 10.0 ** round(math.log10(view.radius / 8.0))
         self._floor.position = (0.0, 0.0, view.floor)
@@ -79,7 +81,7 @@ class Stage:
 
 
 def outline(robot: Robot) -> np.ndarray:
-    """The edges of the workspace's cylinder or box, (n, 2, 3) in metres."""
+    """The edges of the workspace's cylinder, box or rectangle, (n, 2, 3) in metres."""
     workspace = robot.workspace
     if workspace.radius is not None:
         angles = np.linspace(0.0, 2 * math.pi, _CIRCLE + 1)

@@ -12,7 +12,6 @@ import time
 from collections.abc import Callable
 from concurrent.futures import Future
 
-import numpy as np
 from fastapi import APIRouter
 from starlette.requests import HTTPConnection
 from viser import ClientHandle
@@ -21,6 +20,7 @@ from deltaviz.machine.intent import Answer, Intent, Refused
 from deltaviz.machine.port import MachinePort
 from deltaviz.machine.snapshot import Snapshot
 from deltaviz.robots import Robot
+from deltaviz.robots.coordinates import in_space
 from deltaviz.scene.controls import Controls
 from deltaviz.scene.drag import Dragging, eye_of
 from deltaviz.scene.gateway import Gate, make_router
@@ -181,7 +181,7 @@ class Scene:
             if before is None or (before.theta, before.xyz) != (theta, xyz):
                 self._model.show(theta, xyz)
             if self._frames % _TRAIL_EVERY == 0:
-                self._trail.pass_through(xyz, time.monotonic())
+                self._trail.pass_through(in_space(xyz), time.monotonic())
         self._model.show_target(snapshot.target_theta, snapshot.target_xyz)
         self._model.show_margins(snapshot.margins)
 
@@ -189,7 +189,7 @@ class Scene:
         """What need not happen in every frame."""
         self._panel.show(snapshot)
         self._dragging.end_lost(snapshot)
-        tip = metres(snapshot.xyz) if snapshot.xyz is not None else np.zeros(3)
+        tip = metres(in_space(snapshot.xyz or (0.0, 0.0, 0.0)))
         now = time.monotonic()
         for viewer in self._viewers.values():
             viewer.set_steering(self._may_steer(viewer.session, snapshot), self._model)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Awaitable, Callable
 from typing import Annotated, Any
@@ -89,7 +90,8 @@ def _add_motion(router: APIRouter, machine: MachinePort) -> None:
         """Move there: straight for xyz_mm. Nothing moves when the way breaks a limit."""
         if to.xyz_mm is not None:
             point = robot_point(machine, to.xyz_mm)
-            return await ask(machine, intent.MoveToPoint(client, point, to.speed))
+            tool = None if to.tool_deg is None else math.radians(to.tool_deg)
+            return await ask(machine, intent.MoveToPoint(client, point, to.speed, tool))
         angles = robot_angles(machine, to.theta_deg or [])
         return await ask(machine, intent.MoveToAngles(client, angles, to.speed))
 

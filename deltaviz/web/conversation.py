@@ -7,11 +7,10 @@ is posted and answered later, so nothing that the controller does delays the nex
 from __future__ import annotations
 
 import logging
-import math
 import secrets
 import time
 from collections import OrderedDict
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from concurrent.futures import Future
 from dataclasses import dataclass
 from enum import Enum, auto
@@ -22,7 +21,7 @@ from pydantic import ValidationError
 from deltaviz.machine import intent
 from deltaviz.machine.port import MachinePort
 from deltaviz.web import messages
-from deltaviz.web.axes import AxesError, to_robot_angles, to_robot_point
+from deltaviz.web.axes import AxesError, from_camera, to_robot_angles, to_robot_point
 from deltaviz.web.faults import sentence
 from deltaviz.web.once import OncePerMinute
 from deltaviz.web.pace import Allowance
@@ -169,7 +168,8 @@ class Conversation:
             return to_robot_angles(robot, message.v_deg_s, field="v_deg_s")
         if message.v_mm_s is None:
             raise AxesError(f"v_mm_s is missing: this jog began in the frame '{press.frame}'.")
-        return to_robot_point(robot, _turned(message.v_mm_s, press.yaw), field="v_mm_s")
+        velocity = from_camera(robot, message.v_mm_s, press.yaw)
+        return to_robot_point(robot, velocity, field="v_mm_s")
 
     def _post(self, message: messages.PageMessage, wish: intent.Intent) -> None:
         def answered(future: Future[intent.Answer]) -> None:
@@ -206,10 +206,3 @@ def _what_is_wrong(error: ValidationError) -> str:
     if first[0]["type"] in ("union_tag_invalid", "union_tag_not_found"):
         return f"'type' must be one of {', '.join(messages.TYPES)}."
     return sentence(first, tags=messages.TYPES)
-
-
-def _turned(xyz: Sequence[float], yaw: float) -> list[float]:
-    """The vector turned about Z by `yaw` (rad)."""
-    x, y, z = xyz
-    cos, sin = math.cos(yaw), math.sin(yaw)
-    return [x * cos - y * sin, x * sin + y * cos, z]

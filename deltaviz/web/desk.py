@@ -42,17 +42,21 @@ async def ask(machine: MachinePort, wish: intent.Intent) -> models.Taken:
     return models.Taken()
 
 
-def robot_point(machine: MachinePort, xyz: Sequence[float]) -> tuple[float, ...]:
-    """The field `xyz_mm` in the robot's axes, or a 422."""
+def robot_point(
+    machine: MachinePort, xyz: Sequence[float], *, field: str = "xyz_mm"
+) -> tuple[float, ...]:
+    """A place in the robot's axes, or a 422."""
     try:
-        return to_robot_point(machine.robot, xyz, field="xyz_mm")
+        return to_robot_point(machine.robot, xyz, field=field)
     except AxesError as error:
         raise HTTPException(422, str(error)) from None
 
 
-def robot_angles(machine: MachinePort, degrees: Sequence[float]) -> tuple[float, ...]:
-    """The field `theta_deg` in rad, one for each joint, or a 422."""
+def robot_angles(
+    machine: MachinePort, degrees: Sequence[float], *, field: str = "theta_deg"
+) -> tuple[float, ...]:
+    """Angles in rad, one for each joint, or a 422."""
     try:
-        return to_robot_angles(machine.robot, degrees, field="theta_deg")
+        return to_robot_angles(machine.robot, degrees, field=field)
     except AxesError as error:
         raise HTTPException(422, str(error)) from None

@@ -74,7 +74,16 @@ class _PointOrAngles(Model):
 
 
 class Move(_PointOrAngles):
-    """Where to: the tool tip, straight, or the joints."""
+    """Where to: the tool tip, straight, or the joints. `tool_deg`: to where a tool that turns
+    turns on a straight way."""
+
+    tool_deg: Annotated[Degrees | None, Field(examples=[None])] = None
+
+    @model_validator(mode="after")
+    def _tool_of_a_point(self) -> Self:
+        if self.tool_deg is not None and self.xyz_mm is None:
+            raise ValueError("tool_deg goes with xyz_mm; theta_deg has the tool's angle itself")
+        return self
 
 
 class Step(_PointOrAngles):

@@ -24,6 +24,7 @@ def robot_json(robot: Robot) -> dict[str, Any]:
         "kind": robot.kind,
         "joints": robot.joint_count,
         "axes": list(robot.axes),
+        "joint_names": list(robot.joint_names),
         "tool_axis": robot.tool_axis,
         "geometry": {**_geometry(robot.mechanism), "tool_offset": in_space(robot.tool_offset)},
         "workspace": {

@@ -9,7 +9,7 @@ import viser
 
 from deltaviz.robots import Robot
 from deltaviz.scene import rotations
-from deltaviz.scene.delta_rig import DeltaDimensions, DeltaRig, arm_poses
+from deltaviz.scene.rig import Dimensions, Rig, arm_poses
 from deltaviz.scene.units import metres
 
 
@@ -22,7 +22,7 @@ def drawn(request: pytest.FixtureRequest) -> Robot:
 def test_the_drawn_robot_closes(drawn: Robot, offset: tuple[float, float, float]) -> None:
     """Arms and rods, turned as they are drawn, end where the next part begins."""
     tip = np.add((0.0, 0.0, sum(drawn.workspace.z) / 2), offset)
-    size = DeltaDimensions.of(drawn)
+    size = Dimensions.of(drawn)
     centre = metres(tip)
     x, y, z = centre.tolist()
     poses = arm_poses(size, tuple(drawn.inverse(tip).tolist()), (x, y, z))
@@ -37,7 +37,7 @@ def test_the_drawn_robot_closes(drawn: Robot, offset: tuple[float, float, float]
 
 def test_the_tool_hangs_below_the_effector(scene_api: viser.SceneApi, robot: Robot) -> None:
     longer = dataclasses.replace(robot, tool_offset=(0.0, 0.0, -30.0))
-    rig = DeltaRig(scene_api, "/rig", DeltaDimensions.of(longer))
+    rig = Rig(scene_api, "/rig", Dimensions.of(longer))
     rig.move((0.0, 0.0, 0.0), (0.0, 0.0, -330.0))
     assert rig.effector.position == pytest.approx((0.0, 0.0, -0.300))
 
@@ -45,7 +45,7 @@ def test_the_tool_hangs_below_the_effector(scene_api: viser.SceneApi, robot: Rob
 def test_an_unknown_pose_leaves_the_rig_where_it_is(
     scene_api: viser.SceneApi, robot: Robot
 ) -> None:
-    rig = DeltaRig(scene_api, "/rig", DeltaDimensions.of(robot))
+    rig = Rig(scene_api, "/rig", Dimensions.of(robot))
     rig.move((0.0, 0.0, 0.0), (0.0, 0.0, -330.0))
     rig.move((math.nan, 0.0, 0.0), (0.0, 0.0, -340.0))
     assert rig.effector.position == pytest.approx((0.0, 0.0, -0.330))
