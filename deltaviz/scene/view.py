@@ -159,9 +159,9 @@ class Scene:
         snapshot = self._machine.snapshot
         robot = self._machine.robot
         if robot is not self._robot and robot != self._robot:
+            self._panel.set_robot(robot)  # first, as drawing tells who may use its sliders
             self._model.remove()
             self._draw(robot)
-            self._panel.set_robot(robot)
         self._frames += 1
         if snapshot is not self._shown and self._fits(snapshot):
             with self._server.atomic():

@@ -10,6 +10,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
+from pathlib import Path
 from typing import Any
 
 import msgspec
@@ -35,6 +36,7 @@ from deltaviz.machine.mode import Mode
 from deltaviz.machine.snapshot import LinkStatus, Snapshot
 from deltaviz.mechanism import RotaryDelta
 from deltaviz.robots import Robot, load_robot
+from deltaviz.robots.coordinates import in_robot
 from deltaviz.scene.listener import open_listener
 from deltaviz.scene.view import Scene
 
@@ -52,7 +54,12 @@ class FakeMachine:
         self.refusal: str | None = None
         self.holder: str | None = None
         self.follows = True
-        self.snapshot = self._at((0.0, 0.0, sum(self.robot.workspace.z) / 2))
+        self.snapshot = self._at(self.middle)
+
+    @property
+    def middle(self) -> tuple[float, ...]:
+        """On the z axis, half way down the workspace."""
+        return in_robot(self.robot, (0.0, 0.0, sum(self.robot.workspace.z) / 2))
 
     def _at(self, xyz: tuple[float, ...], **changes: Any) -> Snapshot:
         theta = tuple(float(angle) for angle in self.robot.inverse(xyz))
@@ -65,7 +72,7 @@ class FakeMachine:
             theta=theta,
             xyz=xyz,
             theta_speed=zeros,
-            xyz_speed=(0.0, 0.0, 0.0),
+            xyz_speed=(0.0,) * len(xyz),
             command_theta=theta,
             command_xyz=xyz,
             target_theta=theta,
@@ -93,7 +100,7 @@ class FakeMachine:
 
     def become(self, robot: Robot) -> None:
         self.robot = robot
-        self.be_at((0.0, 0.0, sum(robot.workspace.z) / 2))
+        self.be_at(self.middle)
 
     def of(self, kind: type) -> list[Any]:
         return [intent for intent in self.posted if isinstance(intent, kind)]
@@ -107,8 +114,7 @@ class FakeMachine:
         if self.follows and isinstance(intent, DragTo | FollowPoint):
             self.be_at(intent.xyz)
         if self.follows and isinstance(intent, FollowAngles):
-            x, y, z = self.robot.forward(intent.theta).tolist()
-            self.be_at((x, y, z))
+            self.be_at(tuple(self.robot.forward(intent.theta).tolist()), theta=intent.theta)
         answer.set_result(Accepted())
         return answer
 
@@ -266,6 +272,17 @@ def other_robot(robot: Robot) -> Robot:
     )
     workspace = dataclasses.replace(robot.workspace, z=(-290.0, -230.0), radius=120.0)
     return dataclasses.replace(robot, name="other", mechanism=mechanism, workspace=workspace)
+
+
+@pytest.fixture(scope="session")
+def planar_robot() -> Robot:
+    return load_robot("fivebar")
+
+
+@pytest.fixture(scope="session")
+def tool_robot() -> Robot:
+    """The preset stm32 with a tool that turns."""
+    return load_robot(Path(__file__).parents[2] / "docs" / "examples" / "stm32-tool.toml")
 
 
 @contextlib.contextmanager

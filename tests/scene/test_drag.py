@@ -198,3 +198,32 @@ def test_above_the_horizon_the_last_target_holds(hand: Hand) -> None:
     asyncio.run(hand.dragging.on_plane(event))
     assert hand.machine.of(DragTo) == []
     assert metres((0.0, 0.0, -330.0)) == pytest.approx(AHEAD)
+
+
+PLANAR_TIP = np.array((0.0, 0.0, -0.185))
+
+
+@pytest.fixture
+def planar_hand(machine: Any, planar_robot: Any) -> Iterator[Hand]:
+    machine.become(planar_robot)
+    token = SESSION.set("anna")
+    hand = Hand(machine)
+    hand.grabbed = PLANAR_TIP
+    yield hand
+    SESSION.reset(token)
+
+
+def test_a_planar_robot_is_dragged_in_its_plane(planar_hand: Hand) -> None:
+    planar_hand.does("start", PLANAR_TIP)
+    planar_hand.does("update", PLANAR_TIP)
+    planar_hand.does("update", PLANAR_TIP + np.array((0.03, 0.0, 0.02)))
+    stayed, moved = planar_hand.machine.of(DragTo)
+    assert stayed.xyz == pytest.approx((0.0, -185.0))  # no jump
+    assert moved.xyz == pytest.approx((30.0, -165.0))
+
+
+def test_with_shift_a_planar_robot_keeps_its_x(planar_hand: Hand) -> None:
+    planar_hand.does("start", PLANAR_TIP, shift=True)
+    planar_hand.does("update", PLANAR_TIP + np.array((0.05, 0.0, 0.02)), shift=True)
+    (moved,) = planar_hand.machine.of(DragTo)
+    assert moved.xyz == pytest.approx((0.0, -165.0))

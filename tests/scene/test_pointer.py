@@ -59,6 +59,22 @@ def test_with_shift_only_the_height_follows() -> None:
     assert tip == pytest.approx(GRIP.tip + np.array((0.0, 0.0, 0.08)))
 
 
+@pytest.mark.parametrize("screen", [(0.1, 0.2), (0.5, 0.5), (0.9, 0.8), (0.4, -0.3)])
+def test_a_drag_in_the_plane_keeps_the_grabbed_place_under_the_pointer(
+    screen: tuple[float, float],
+) -> None:
+    tip = GRIP.in_plane(EYE, screen)
+    assert tip is not None
+    assert tip[1] == GRIP.tip[1]
+    assert EYE.project(GRIP.grabbed + tip - GRIP.tip) == pytest.approx(screen)
+
+
+def test_seen_along_its_plane_a_robot_cannot_be_dragged_in_it() -> None:
+    aside = eye_at((1.0, -0.02, -0.1), (0.0, -0.02, -0.2))
+    assert GRIP.in_plane(aside, (0.5, 0.4)) is None
+    assert GRIP.along_vertical(aside, (0.5, 0.4)) is not None
+
+
 def test_above_the_horizon_there_is_no_place() -> None:
     level = eye_at((1.0, 0.0, -0.1), (0.0, 0.0, -0.1))
     assert GRIP.over_plane(level, (0.5, 0.2)) is None

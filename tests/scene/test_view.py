@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from deltaviz.machine.intent import FollowPoint
+from deltaviz.machine.intent import FollowAngles, FollowPoint
 from deltaviz.robots import Robot
+from deltaviz.robots.coordinates import in_space
 from deltaviz.scene import colours, framing
 from deltaviz.scene.trail import SEGMENTS, TrailPoints
 
@@ -97,6 +98,79 @@ def test_the_sliders_take_the_range_of_another_robot(
         lambda m: m["type"] == "GuiUpdateMessage" and m["uuid"] == z and "min" in m["updates"]
     )
     assert lowest["updates"]["min"] == -290.0
+
+
+def labels_after(visitor: Any, stand: Any, robot: Robot, last: str) -> list[str]:
+    """The sliders' labels, in their order, that come with another robot."""
+    visitor.inputs.clear()
+    stand.machine.become(robot)
+    visitor.input(last)
+    return [label for label in visitor.inputs if label.endswith(("°", "mm"))]
+
+
+def test_the_sliders_are_those_of_the_robot(
+    own_stand: Any, visit_own: Visit, planar_robot: Robot, tool_robot: Robot
+) -> None:
+    visitor = visit_own("anna")
+    visitor.look()
+    visitor.input("Z mm")
+    own_stand.eventually(lambda: own_stand.server.get_clients())
+    expected = ["θ1 °", "θ2 °", "X mm", "Z mm"]
+    assert labels_after(visitor, own_stand, planar_robot, "Z mm") == expected
+    visitor.send(type="GuiUpdateMessage", uuid=visitor.input("Z mm"), updates={"value": -200.0})
+    wish = own_stand.eventually(lambda: own_stand.machine.of(FollowPoint))[-1]
+    assert wish.xyz == (0.0, -200.0)
+    expected = ["θ1 °", "θ2 °", "θ3 °", "Tool °", "X mm", "Y mm", "Z mm"]
+    assert labels_after(visitor, own_stand, tool_robot, "Z mm") == expected
+    visitor.send(type="GuiUpdateMessage", uuid=visitor.input("Tool °"), updates={"value": 90.0})
+    wish = own_stand.eventually(lambda: own_stand.machine.of(FollowAngles))[-1]
+    assert wish.theta[3] == pytest.approx(math.radians(90))
+
+
+def test_who_only_watches_cannot_use_the_sliders_of_another_robot(
+    own_stand: Any, visit_own: Visit, planar_robot: Robot
+) -> None:
+    visitor = visit_own("boris")
+    visitor.look()
+    visitor.input("Z mm")
+    own_stand.eventually(lambda: own_stand.server.get_clients())
+    own_stand.machine.be_held_by("anna")
+    visitor.read(lambda m: m.get("updates") == {"disabled": True})
+    visitor.inputs.clear()
+    own_stand.machine.become(planar_robot)
+    z = visitor.input("Z mm")
+    visitor.read(lambda m: m.get("uuid") == z and m.get("updates") == {"disabled": True})
+
+
+def test_every_kind_of_robot_takes_the_place_of_every_other(
+    own_stand: Any, planar_robot: Robot, tool_robot: Robot
+) -> None:
+    """Drawn at its own pose, with nothing left over of the one before."""
+    first = own_stand.machine.robot
+    seen: dict[str, set[str]] = {}
+    for robot in (planar_robot, tool_robot, first, planar_robot, tool_robot, first):
+        own_stand.machine.become(robot)
+        own_stand.eventually(lambda robot=robot: own_stand.scene._robot is robot)
+        place = in_space(own_stand.machine.snapshot.xyz)
+        own_stand.eventually(lambda place=place: np.allclose(drawn_tip(own_stand), place))
+        assert seen.setdefault(robot.name, nodes(own_stand)) == nodes(own_stand)
+    assert "/robot/effector/tool" in seen[tool_robot.name]
+    assert "/robot/arm2" not in seen[planar_robot.name]
+
+
+def test_a_tool_that_turns_is_shown_turned_and_at_its_limit_red(
+    own_stand: Any, tool_robot: Robot
+) -> None:
+    own_stand.machine.become(tool_robot)
+    own_stand.eventually(lambda: own_stand.scene._robot is tool_robot)
+    xyz = (0.0, 0.0, -330.0)
+    theta = (*tool_robot.inverse(xyz)[:3].tolist(), math.radians(-90))
+    own_stand.machine.be_at(xyz, theta=theta, target_theta=theta, margins=(1.0, 1.0, 1.0, 0.0))
+    tool = own_stand.server.scene.get_handle_by_name("/robot/effector/tool")
+    half = math.sqrt(0.5)
+    own_stand.eventually(lambda: np.allclose(tool.wxyz, (half, 0, 0, -half)))
+    hub = own_stand.server.scene.get_handle_by_name("/robot/effector/tool/hub")
+    own_stand.eventually(lambda: tuple(hub.color) == colours.tint(colours.STEEL, 0.0))
 
 
 def test_an_unknown_pose_is_shown_as_a_shade(stand: Any) -> None:
