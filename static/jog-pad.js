@@ -5,12 +5,15 @@
  * @import {JogChoice} from "./jog-choice.js"
  * @import {Store} from "./store.js"
  * @import {Frame} from "./types.js"
+ * @import {Robot} from "./robot.js"
+ * @import {JogWish} from "./jogging.js"
  *
- * @typedef {{text: string, label: string, hint: string, area: string, direction: number[]}} PadButton
+ * @typedef {{text: string, label: string, hint: string, area: string, wish: JogWish}} PadButton
  */
 
 import { byId, make, markPressed, setText } from "./dom.js";
-import { jogSpeedText } from "./robot.js";
+import { inPlane } from "./keymap.js";
+import { jogSpeedText, jointName } from "./robot.js";
 import { obstacleToMoving } from "./obstacle.js";
 
 /** @type {readonly (readonly [string, number, number, number, string])[]} */
@@ -21,54 +24,73 @@ const PLACES = [
   ["up", 0, 0, 1, "PgUp"], ["down", 0, 0, -1, "PgDn"],
 ]; // prettier-ignore
 
-/** @type {Readonly<Record<string, readonly [string, string]>>} the names in each frame */
-const NAMES = {
-  nw: ["↖", "↖"], n: ["Y+", "Away"], ne: ["↗", "↗"],
-  w: ["X−", "Left"], e: ["X+", "Right"],
-  sw: ["↙", "↙"], s: ["Y−", "Near"], se: ["↘", "↘"],
-  up: ["Z+", "Up"], down: ["Z−", "Down"],
-}; // prettier-ignore
+const ARROWS = { nw: "↖", ne: "↗", sw: "↙", se: "↘" };
 
-/** @type {Readonly<Record<string, readonly [string, string]>>} spoken names of the diagonals */
-const DIAGONALS = {
-  nw: ["X− and Y+", "Left and away"], ne: ["X+ and Y+", "Right and away"],
-  sw: ["X− and Y−", "Left and near"], se: ["X+ and Y−", "Right and near"],
-}; // prettier-ignore
+/** @type {Readonly<Record<string, readonly string[]>>} what −, + along X, Y, Z is in each frame */
+const NAMES = {
+  base: ["X−", "X+", "Y−", "Y+", "Z−", "Z+"],
+  camera: ["Left", "Right", "Near", "Away", "Down", "Up"],
+};
 
 /**
+ * Of a planar robot the pad is its plane, so that there is no column for Z.
+ *
  * @param {Frame} frame
+ * @param {Robot | null} robot
  * @param {number} joints
  * @returns {PadButton[]}
  */
-export function padButtons(frame, joints) {
-  if (frame === "joints") return jointButtons(joints);
-  const naming = frame === "base" ? 0 : 1;
-  return PLACES.map(([area, x, y, z, hint]) => {
-    const text = NAMES[area]?.[naming] ?? "";
-    return { text, label: DIAGONALS[area]?.[naming] ?? text, hint, area, direction: [x, y, z] };
+export function padButtons(frame, robot, joints) {
+  if (frame === "joints") {
+    return Array.from({ length: joints }, (_, i) => i).flatMap((i) => [
+      jointButton(robot, joints, i, -1),
+      jointButton(robot, joints, i, 1),
+    ]);
+  }
+  const places = robot?.planar ? PLACES.filter(([, , , z]) => z === 0) : PLACES;
+  const buttons = places.map(([area, x, y, z, hint]) => {
+    const direction = robot?.planar ? inPlane([x, y, z]) : [x, y, z];
+    const names = direction.flatMap((d, i) =>
+      d === 0 ? [] : [NAMES[frame]?.[2 * i + (d < 0 ? 0 : 1)] ?? ""],
+    );
+    const spoken = names.map((name, i) => (i > 0 && frame === "camera" ? name.toLowerCase() : name));
+    const text = ARROWS[/** @type {keyof typeof ARROWS} */ (area)] ?? names.join("");
+    return { text, label: spoken.join(" and "), hint, area, wish: { direction } };
   });
+  if (!robot?.toolAxis) return buttons;
+  const turning = { ...jointButton(robot, joints, joints - 1, 1), text: "↺ +", hint: "R", area: "ccw" };
+  const back = { ...jointButton(robot, joints, joints - 1, -1), text: "↻ −", hint: "⇧ R", area: "cw" };
+  return [...buttons, turning, back];
 }
 
 /**
+ * @param {Robot | null} robot
  * @param {number} joints
- * @returns {PadButton[]}
+ * @param {number} joint 0-based
+ * @param {1 | -1} sign
+ * @returns {PadButton}
  */
-function jointButtons(joints) {
-  return Array.from({ length: joints }, (_, i) => i).flatMap((i) =>
-    [-1, 1].map((sign) => ({
-      text: `θ${i + 1} ${sign < 0 ? "−" : "+"}`,
-      label: `Joint ${i + 1} ${sign < 0 ? "−, up" : "+, down"}`,
-      hint: sign < 0 ? `⇧ ${i + 1}` : `${i + 1}`,
-      area: "",
-      direction: Array.from({ length: joints }, (_unused, j) => (j === i ? sign : 0)),
-    })),
-  );
+function jointButton(robot, joints, joint, sign) {
+  const turnsTool = robot?.toolAxis && joint === joints - 1;
+  const [who, back, forth] = turnsTool
+    ? ["Tool", "clockwise", "counter-clockwise"]
+    : [`Joint ${joint + 1}`, "up", "down"];
+  const direction = Array(joints).fill(0);
+  direction[joint] = sign;
+  return {
+    text: `${jointName(robot, joint)} ${sign < 0 ? "−" : "+"}`,
+    label: `${who} ${sign < 0 ? `−, ${back}` : `+, ${forth}`}`,
+    hint: sign < 0 ? `⇧ ${joint + 1}` : `${joint + 1}`,
+    area: "",
+    wish: { direction, ofJoints: true },
+  };
 }
 
 export class JogPad {
   #pad = byId("pad", HTMLElement);
   #frames = byId("frames", HTMLElement).querySelectorAll("button");
   #steps = byId("steps", HTMLElement).querySelectorAll("button");
+  #toolKeys = byId("tool-keys", HTMLElement);
   #store;
   #hands;
   #choice;
@@ -78,7 +100,7 @@ export class JogPad {
   /**
    * @param {{
    *   store: Store, hands: Hands, choice: JogChoice,
-   *   press: (source: string, direction: number[]) => void,
+   *   press: (source: string, wish: JogWish) => void,
    * }} parts `press` begins a jog, or makes a step
    */
   constructor({ store, hands, choice, press }) {
@@ -115,14 +137,16 @@ export class JogPad {
     const { state, robot } = this.#store;
     const frame = this.#choice.frame(state);
     const joints = robot?.joints ?? state?.theta_deg?.length ?? 3;
-    this.#build(frame, joints);
+    this.#build(frame, robot, joints);
+    this.#toolKeys.hidden = !robot?.toolAxis;
     const unhomed = frame !== this.#choice.chosen;
     for (const button of this.#frames) button.disabled = unhomed && button.dataset["frame"] !== frame;
     markPressed(this.#frames, (b) => b.dataset["frame"] === frame);
     const step = this.#choice.step(state);
     for (const button of this.#steps) button.disabled = !this.#choice.steps(state) && button.dataset["step"] !== "";
     markPressed(this.#steps, (b) => (Number(b.dataset["step"]) || null) === step);
-    setText(byId("step-label", HTMLElement), frame === "joints" ? "Step °" : "Step mm");
+    const units = frame === "joints" ? "°" : robot?.toolAxis ? "mm, °" : "mm";
+    setText(byId("step-label", HTMLElement), `Step ${units}`);
     const speed = byId("jog-speed", HTMLElement);
     if (robot && state) setText(speed, jogSpeedText(robot, frame, state.homed, state.override));
     this.#pad.toggleAttribute("data-barred", obstacleToMoving(this.#store) !== null);
@@ -138,49 +162,52 @@ export class JogPad {
 
   /**
    * @param {Frame} frame
+   * @param {Robot | null} robot
    * @param {number} joints
    */
-  #build(frame, joints) {
-    const built = `${frame} ${joints}`;
+  #build(frame, robot, joints) {
+    const shape = frame === "joints" ? "joints" : robot?.planar ? "plane" : robot?.toolAxis ? "tool" : "space";
+    const built = `${frame} ${shape} ${robot?.jointNames.join() ?? joints}`;
     if (built === this.#built) return;
     this.#built = built;
     this.#hands.endJog();
     this.#pad.dataset["frame"] = frame === "joints" ? "joints" : "cartesian";
+    this.#pad.dataset["shape"] = shape;
     this.#pad.dataset["joints"] = String(joints);
-    this.#pad.replaceChildren(...padButtons(frame, joints).map((button) => this.#make(button)));
+    this.#pad.replaceChildren(...padButtons(frame, robot, joints).map((button) => this.#make(button)));
   }
 
   /** @param {PadButton} button */
-  #make({ text, label, hint, area, direction }) {
+  #make({ text, label, hint, area, wish }) {
     const element = make("button", { type: "button", "aria-label": label }, make("b", {}, text));
-    element.dataset["direction"] = direction.join();
+    element.dataset["direction"] = wish.direction.join();
     if (area) element.dataset["area"] = area;
     if (hint) element.append(make("kbd", {}, hint));
-    this.#listen(element, direction);
+    this.#listen(element, wish);
     return element;
   }
 
   /**
    * @param {HTMLButtonElement} button
-   * @param {number[]} direction
+   * @param {JogWish} wish
    */
-  #listen(button, direction) {
+  #listen(button, wish) {
     button.addEventListener("pointerdown", (event) => {
       if (this.#step !== null || event.button !== 0) return;
       if (event.ctrlKey || event.altKey || event.metaKey) return;
       button.setPointerCapture(event.pointerId);
-      this.#press(`pointer:${event.pointerId}`, direction);
+      this.#press(`pointer:${event.pointerId}`, wish);
     });
     for (const type of /** @type {const} */ (["pointerup", "pointercancel", "lostpointercapture"])) {
       button.addEventListener(type, (event) => this.#hands.release(`pointer:${event.pointerId}`));
     }
     button.addEventListener("click", () => {
-      if (this.#step !== null) this.#press("click", direction);
+      if (this.#step !== null) this.#press("click", wish);
     });
     button.addEventListener("keydown", (event) => {
       if (event.key !== " " && event.key !== "Enter") return;
       if (event.repeat || event.ctrlKey || event.altKey || event.metaKey) event.preventDefault();
-      else if (this.#step === null) this.#press(`key:${event.code}`, direction);
+      else if (this.#step === null) this.#press(`key:${event.code}`, wish);
     });
   }
 }

@@ -5,6 +5,12 @@
  * @import {JogChoice} from "./jog-choice.js"
  * @import {Notices} from "./notices.js"
  * @import {Store} from "./store.js"
+ *
+ * @typedef {{
+ *   direction: number[],  // each entry -1, 0 or 1
+ *   ofJoints?: boolean,   // of the joints, whatever the frame
+ *   modifier?: string,    // the modifier key that belongs to the press
+ * }} JogWish
  */
 
 import { post } from "./api.js";
@@ -34,17 +40,16 @@ export class Jogging {
   key(event, source) {
     const { state, robot } = this.#store;
     if (robot === null) return false;
-    const jog = keyJog(event, this.#choice.frame(state), robot.joints);
-    if (jog !== null) this.press(source, jog.direction, jog.modifier);
-    return jog !== null;
+    const wish = keyJog(event, this.#choice.frame(state), robot);
+    if (wish !== null) this.press(source, wish);
+    return wish !== null;
   }
 
   /**
    * @param {string} source the key or pointer
-   * @param {number[]} direction each entry -1, 0 or 1
-   * @param {string} [modifier] the modifier key that belongs to the press
+   * @param {JogWish} wish
    */
-  press(source, direction, modifier) {
+  press(source, { direction, ofJoints, modifier }) {
     if (this.#hands.source !== null) return;
     const { state, robot } = this.#store;
     const obstacle = obstacleToMoving(this.#store);
@@ -52,7 +57,7 @@ export class Jogging {
       this.#notices.say("warn", obstacle ?? "The robot's limits are not known yet.");
       return;
     }
-    const frame = this.#choice.frame(state);
+    const frame = ofJoints ? "joints" : this.#choice.frame(state);
     const step = this.#choice.step(state);
     if (step !== null) {
       void this.#notices.watch(this.#step(direction.map((d) => d * step), frame));

@@ -2,8 +2,8 @@
  * Which key jogs where. Keys are named by their place on the keyboard (`event.code`).
  *
  * @import {Frame} from "./types.js"
- *
- * @typedef {{direction: number[], modifier?: string}} KeyJog
+ * @import {Robot} from "./robot.js"
+ * @import {JogWish} from "./jogging.js"
  */
 
 /** @type {Readonly<Record<string, readonly [number, number, number]>>} */
@@ -16,22 +16,44 @@ const CARTESIAN = {
   PageDown: [0, 0, -1], KeyE: [0, 0, -1],
 }; // prettier-ignore
 
+/** Turns a tool that turns, in every frame. */
+const TOOL = "KeyR";
+
 /**
  * @param {{code: string, shiftKey: boolean}} event
  * @param {Frame} frame
- * @param {number} joints how many the robot has
- * @returns {KeyJog | null} null for a key that does not jog in this frame
+ * @param {Robot} robot
+ * @returns {JogWish | null} null for a key that does not jog this robot in this frame
  */
-export function keyJog({ code, shiftKey }, frame, joints) {
+export function keyJog({ code, shiftKey }, frame, robot) {
+  if (code === TOOL && robot.toolAxis) return jointJog(robot, robot.joints - 1, shiftKey);
   if (frame !== "joints") {
     const direction = CARTESIAN[code];
-    return direction ? { direction: [...direction] } : null;
+    return direction ? { direction: robot.planar ? inPlane(direction) : [...direction] } : null;
   }
   const joint = Number(/^(?:Digit|Numpad)([1-9])$/.exec(code)?.[1] ?? 0);
-  if (joint < 1 || joint > joints) return null;
-  const direction = Array.from({ length: joints }, (_, i) => (i === joint - 1 ? 1 : 0));
-  if (!shiftKey) return { direction };
-  return { direction: direction.map((d) => (d === 0 ? 0 : -1)), modifier: "Shift" };
+  return joint < 1 || joint > robot.joints ? null : jointJog(robot, joint - 1, shiftKey);
+}
+
+/**
+ * A robot without Y is jogged as it is seen: what leads away elsewhere leads up.
+ *
+ * @param {readonly [number, number, number]} direction
+ */
+export function inPlane([x, y, z]) {
+  return [x, 0, y + z];
+}
+
+/**
+ * @param {Robot} robot
+ * @param {number} joint 0-based
+ * @param {boolean} shift backwards
+ * @returns {JogWish}
+ */
+function jointJog(robot, joint, shift) {
+  const direction = Array(robot.joints).fill(0);
+  direction[joint] = shift ? -1 : 1;
+  return { direction, ofJoints: true, ...(shift && { modifier: "Shift" }) };
 }
 
 /**
@@ -41,7 +63,7 @@ export function keyJog({ code, shiftKey }, frame, joints) {
  * @param {string} code
  */
 export function isConsoleKey(code) {
-  return code in CARTESIAN || /^(?:Digit|Numpad)[1-9]$/.test(code);
+  return code in CARTESIAN || code === TOOL || /^(?:Digit|Numpad)[1-9]$/.test(code);
 }
 
 /**

@@ -49,7 +49,7 @@ const panel = new ViserPanel();
 
 new Status({ store, watch });
 new Readouts(store);
-new JogPad({ store, hands, choice, press: (source, direction) => jogging.press(source, direction) });
+new JogPad({ store, hands, choice, press: (source, wish) => jogging.press(source, wish) });
 new Pose({ store, watch });
 new MessageBox({
   store,

@@ -3,65 +3,94 @@
  * written while a person edits them.
  *
  * @import {Store} from "./store.js"
+ * @import {Robot} from "./robot.js"
  */
 
 import { post } from "./api.js";
 import { byId, setText } from "./dom.js";
 import { formatNumber, parseNumber } from "./numbers.js";
 import { obstacleToMovingThere } from "./obstacle.js";
+import { AXES, hasAxis } from "./robot.js";
 
-const AXES = ["X", "Y", "Z"];
+const TOOL = AXES.length; // the place of the tool's field, behind the axes'
+const NAMES = [...AXES, "Tool"];
 
 /**
- * @param {string[]} texts of X, Y, Z
- * @returns {{xyz: number[]} | {problem: string, axis: number}}
+ * @param {(string | null)[]} texts of X, Y, Z and the tool's angle; null: the robot has no such
+ * @returns {{values: number[]} | {problem: string, field: number}} an empty tool's field is NaN
  */
 export function parseTarget(texts) {
-  const xyz = [];
-  for (const [axis, text] of texts.entries()) {
-    const value = parseNumber(text);
+  const values = [];
+  for (const [field, text] of texts.entries()) {
+    const empty = text === null || text.trim() === "";
+    const optional = field === TOOL || text === null;
+    const value = empty && optional ? (field === TOOL ? NaN : 0) : parseNumber(text ?? "");
     if (value === null) {
-      const typed = text.trim();
-      const problem = typed ? `${AXES[axis]}: no number.` : `${AXES[axis]} is empty.`;
-      return { problem, axis };
+      const problem = empty ? `${NAMES[field]} is empty.` : `${NAMES[field]}: no number.`;
+      return { problem, field };
     }
-    xyz.push(value);
+    values.push(value);
   }
-  return { xyz };
+  return { values };
+}
+
+/**
+ * @param {Robot | null} robot
+ * @param {number} field
+ */
+function isShown(robot, field) {
+  return field === TOOL ? robot?.toolAxis === true : hasAxis(robot, field);
 }
 
 /** @param {{store: Store, watch: (action: Promise<unknown>) => void}} parts */
 export function addMoveTo({ store, watch }) {
-  const fields = ["move-x", "move-y", "move-z"].map((id) => byId(id, HTMLInputElement));
+  const ids = ["move-x", "move-y", "move-z", "move-tool"];
+  const fields = ids.map((id) => byId(id, HTMLInputElement));
   const problem = byId("move-problem", HTMLElement);
+  const form = byId("move-form", HTMLFormElement);
 
   /**
    * @param {string} text
-   * @param {number} [axis]
+   * @param {number} [field]
    */
-  const complain = (text, axis) => {
+  const complain = (text, field) => {
     setText(problem, text);
-    fields.forEach((field, i) => field.setAttribute("aria-invalid", String(i === axis)));
+    fields.forEach((input, i) => input.setAttribute("aria-invalid", String(i === field)));
   };
-  for (const field of fields) field.addEventListener("input", () => complain(""));
+  for (const input of fields) input.addEventListener("input", () => complain(""));
 
-  byId("move-form", HTMLFormElement).addEventListener("submit", (event) => {
+  form.addEventListener("submit", (event) => {
     event.preventDefault();
-    const target = parseTarget(fields.map((field) => field.value));
+    const texts = fields.map((input, i) => (isShown(store.robot, i) ? input.value : null));
+    const target = parseTarget(texts);
     if ("problem" in target) {
-      complain(target.problem, target.axis);
-      fields[target.axis]?.focus();
+      complain(target.problem, target.field);
+      fields[target.field]?.focus();
       return;
     }
     complain("");
+    const tool = target.values[TOOL] ?? NaN;
+    const body = {
+      xyz_mm: target.values.slice(0, TOOL),
+      speed: 1,
+      ...(Number.isFinite(tool) && { tool_deg: tool }),
+    };
     const obstacle = obstacleToMovingThere(store);
-    watch(obstacle ? Promise.reject(new Error(obstacle)) : post("move", { xyz_mm: target.xyz, speed: 1 }));
+    watch(obstacle ? Promise.reject(new Error(obstacle)) : post("move", body));
   });
 
   const fill = byId("move-fill", HTMLButtonElement);
   fill.addEventListener("click", () => {
     complain("");
-    fields.forEach((field, i) => (field.value = formatNumber(store.state?.xyz_mm?.[i], 2)));
+    const { state } = store;
+    fields.forEach((input, i) => {
+      const value = i === TOOL ? state?.theta_deg?.at(-1) : state?.xyz_mm?.[i];
+      input.value = formatNumber(value, 2);
+    });
   });
-  store.addView(() => (fill.disabled = store.stale || !store.state?.xyz_mm));
+  store.addView(() => {
+    fill.disabled = store.stale || !store.state?.xyz_mm;
+    fields.forEach((input, i) => input.parentElement?.toggleAttribute("hidden", !isShown(store.robot, i)));
+    form.dataset["fields"] = String(fields.filter((_, i) => isShown(store.robot, i)).length);
+  });
 }

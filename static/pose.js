@@ -10,6 +10,7 @@ import { post } from "./api.js";
 import { byId, make, setText } from "./dom.js";
 import { formatNumber } from "./numbers.js";
 import { obstacleToMovingThere } from "./obstacle.js";
+import { AXES, jointName } from "./robot.js";
 
 /** How long a slider keeps the value that it was let go at, until the command follows. */
 const ECHO_MS = 600;
@@ -25,7 +26,7 @@ export class Pose {
   #watch;
   /** @type {Robot | null} */
   #built = null;
-  /** @type {{field: "theta_deg" | "xyz_mm", sliders: Slider[]}[]} */
+  /** @type {{field: "theta_deg" | "xyz_mm", sliders: (Slider | null)[]}[]} */
   #groups = [];
   /** @type {number | undefined} */
   #waiting;
@@ -46,6 +47,7 @@ export class Pose {
       const command = state?.[`command_${field}`];
       const reported = state?.[field];
       sliders.forEach((slider, i) => {
+        if (slider === null) return;
         slider.input.disabled = barred;
         const free = !slider.held && performance.now() - slider.touched > ECHO_MS;
         const value = command?.[i];
@@ -62,17 +64,20 @@ export class Pose {
     this.#box.replaceChildren();
     this.#groups = [];
     if (robot === null) return;
-    this.#addGroup("theta_deg", robot.angles.map((range, i) => ({ name: `θ${i + 1} °`, range })));
-    this.#addGroup("xyz_mm", robot.axes.map((range, i) => ({ name: `${"XYZ"[i]} mm`, range })));
+    this.#addGroup("theta_deg", robot.angles.map((range, i) => ({ name: `${jointName(robot, i)} °`, range })));
+    this.#addGroup("xyz_mm", robot.axes.map((range, i) => ({ name: `${AXES[i]} mm`, range })));
   }
 
   /**
    * @param {"theta_deg" | "xyz_mm"} field
-   * @param {{name: string, range: Range}[]} rows
+   * @param {{name: string, range: Range | null}[]} rows one for each number of the field; those
+   *   without a range are 0 and get no slider
    */
   #addGroup(field, rows) {
-    /** @type {Slider[]} */
-    const sliders = rows.map(({ name, range: [min, max] }) => {
+    /** @type {(Slider | null)[]} */
+    const sliders = rows.map(({ name, range }) => {
+      if (range === null) return null;
+      const [min, max] = range;
       const input = make("input", {
         type: "range", min: String(min), max: String(max), step: "0.1", "aria-label": name,
       });
@@ -81,14 +86,14 @@ export class Pose {
       return { input, output, held: false, touched: -Infinity };
     });
     this.#groups.push({ field, sliders });
-    sliders.forEach((slider, i) => this.#listen(slider, i, field, sliders));
+    sliders.forEach((slider, i) => slider && this.#listen(slider, i, field, sliders));
   }
 
   /**
    * @param {Slider} slider
    * @param {number} index
    * @param {"theta_deg" | "xyz_mm"} field
-   * @param {Slider[]} sliders
+   * @param {(Slider | null)[]} sliders
    */
   #listen(slider, index, field, sliders) {
     slider.input.addEventListener("input", () => {
@@ -106,13 +111,14 @@ export class Pose {
   /**
    * @param {"theta_deg" | "xyz_mm"} field
    * @param {number} index of the slider that was let go
-   * @param {Slider[]} sliders
+   * @param {(Slider | null)[]} sliders
    */
   #go(field, index, sliders) {
     const command = this.#store.state?.[`command_${field}`];
-    const target = sliders.map(({ input }, i) =>
-      i === index ? Number(input.value) : (command?.[i] ?? Number(input.value)),
-    );
+    const target = sliders.map((slider, i) => {
+      const shown = Number(slider?.input.value ?? 0);
+      return i === index ? shown : (command?.[i] ?? shown);
+    });
     this.#watch(post("move", { [field]: target, speed: 1 }));
   }
 }

@@ -6,8 +6,7 @@
 
 import { byId, make, setText } from "./dom.js";
 import { formatNumber, formatShare } from "./numbers.js";
-
-const AXES = ["X", "Y", "Z"];
+import { AXES, hasAxis, jointName } from "./robot.js";
 
 /** @typedef {{reported: HTMLElement, commanded: HTMLElement, speed: HTMLElement}} Row */
 
@@ -19,6 +18,7 @@ export class Readouts {
   #axes = AXES.map((axis) => this.#addRow(`${axis} mm`, "axis"));
   /** @type {Row[]} */
   #joints = [];
+  #jointNames = "";
   #stripNumbers = AXES.map((axis) => {
     const number = make("b", {}, "–");
     this.#strip.append(make("div", {}, make("small", {}, `${axis} mm`), number));
@@ -35,7 +35,7 @@ export class Readouts {
     const { state } = this.#store;
     document.documentElement.toggleAttribute("data-stale", this.#store.stale);
     if (state === null) return;
-    this.#matchJoints(state.theta_deg?.length ?? this.#store.robot?.joints ?? this.#joints.length);
+    this.#match(state.theta_deg?.length ?? this.#store.robot?.joints ?? this.#joints.length);
     this.#axes.forEach((row, i) =>
       fill(row, state.xyz_mm?.[i], state.command_xyz_mm?.[i], state.xyz_speed_share?.[i]),
     );
@@ -45,11 +45,21 @@ export class Readouts {
     this.#stripNumbers.forEach((b, i) => setText(b, formatNumber(state.xyz_mm?.[i], 2)));
   }
 
-  /** @param {number} joints */
-  #matchJoints(joints) {
-    if (joints === this.#joints.length) return;
+  /**
+   * Shows the rows of the robot's axes and joints.
+   *
+   * @param {number} joints
+   */
+  #match(joints) {
+    const { robot } = this.#store;
+    const shown = AXES.map((_, axis) => hasAxis(robot, axis));
+    this.#axes.forEach((row, i) => row.reported.parentElement?.toggleAttribute("hidden", !shown[i]));
+    this.#stripNumbers.forEach((b, i) => b.parentElement?.toggleAttribute("hidden", !shown[i]));
+    const names = Array.from({ length: joints }, (_, i) => `${jointName(robot, i)} °`);
+    if (names.join() === this.#jointNames) return;
+    this.#jointNames = names.join();
     for (const row of this.#body.querySelectorAll(".joint")) row.remove();
-    this.#joints = Array.from({ length: joints }, (_, i) => this.#addRow(`θ${i + 1} °`, "joint"));
+    this.#joints = names.map((name) => this.#addRow(name, "joint"));
   }
 
   /**

@@ -8,9 +8,12 @@
  * @typedef {{
  *   name: string,
  *   joints: number,
+ *   jointNames: string[],
+ *   planar: boolean,          // it has no Y
+ *   toolAxis: boolean,        // the last joint turns the tool
  *   presets: string[],
  *   angles: Range[],          // degrees, one per joint
- *   axes: Range[],            // mm, X Y Z
+ *   axes: (Range | null)[],   // mm, X Y Z; null for one that it does not have
  *   speed: number,            // mm/s, the limit
  *   jointSpeeds: number[],    // degrees/s, the limits
  *   unhomedSpeeds: number[],  // degrees/s, the limits before homing
@@ -29,20 +32,42 @@ export function readRobot(answer) {
   const { joint, cartesian } = answer.limits;
   const [low, high] = answer.workspace.z;
   const around = answer.workspace.radius ?? Math.abs(low);
+  const planar = !answer.axes.includes("Y");
   return {
     name: answer.name,
     joints,
+    jointNames: answer.joint_names,
+    planar,
+    toolAxis: answer.tool_axis,
     presets: answer.presets,
     angles: pairs(joint.min_deg, joint.max_deg, joints),
     axes: [
       answer.workspace.x ?? [-around, around],
-      answer.workspace.y ?? [-around, around],
+      planar ? null : (answer.workspace.y ?? [-around, around]),
       [low, high],
     ],
     speed: cartesian.velocity,
     jointSpeeds: each(joint.velocity_deg_s, joints),
     unhomedSpeeds: each(joint.unhomed_velocity_deg_s, joints),
   };
+}
+
+export const AXES = ["X", "Y", "Z"];
+
+/**
+ * @param {Robot | null} robot
+ * @param {number} axis 0 to 2
+ */
+export function hasAxis(robot, axis) {
+  return robot === null || robot.axes[axis] !== null;
+}
+
+/**
+ * @param {Robot | null} robot
+ * @param {number} joint 0-based
+ */
+export function jointName(robot, joint) {
+  return robot?.jointNames[joint] ?? `θ${joint + 1}`;
 }
 
 /**

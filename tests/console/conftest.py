@@ -83,6 +83,9 @@ PORTS = {"ports": [{"id": "sim", "description": "Simulated board"}]}
 ROBOT: dict[str, Any] = {
     "name": "stm32",
     "joints": 3,
+    "joint_names": ["θ1", "θ2", "θ3"],
+    "axes": ["X", "Y", "Z"],
+    "tool_axis": False,
     "presets": ["deltadraw", "stm32", "trossen", "zheng2023"],
     "workspace": {"z": [-440, -225], "radius": 230, "x": None, "y": None},
     "limits": {
@@ -94,6 +97,38 @@ ROBOT: dict[str, Any] = {
         },
         "cartesian": {"velocity": 600, "acceleration": 6000, "jerk": 150000},
     },
+}
+
+# What differs from READY and ROBOT for the other shapes of robots.
+SHAPES: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
+    "planar": (
+        {
+            "xyz_mm": [5.25, 0.0, -181.5],
+            "theta_deg": [30.0, 26.5],
+            "command_xyz_mm": [5.25, 0.0, -181.5],
+            "command_theta_deg": [30.0, 26.5],
+            "target_xyz_mm": [5.25, 0.0, -181.5],
+            "target_theta_deg": [30.0, 26.5],
+            "theta_speed_share": [0.0, 0.0],
+            "margins": [0.9, 0.9],
+        },
+        {
+            "joints": 2,
+            "joint_names": ["θ1", "θ2"],
+            "axes": ["X", "Z"],
+            "workspace": {"x": [-100, 100], "y": None, "z": [-240, -130], "radius": None},
+        },
+    ),
+    "tool": (
+        {
+            "theta_deg": [21.44, 18.02, 24.91, -40.0],
+            "command_theta_deg": [21.44, 18.02, 24.91, -40.0],
+            "target_theta_deg": [21.44, 18.02, 24.91, -40.0],
+            "theta_speed_share": [0.0, 0.0, 0.0, 0.0],
+            "margins": [0.9, 0.9, 0.9, 0.9],
+        },
+        {"joints": 4, "joint_names": ["θ1", "θ2", "θ3", "Tool"], "tool_axis": True},
+    ),
 }
 
 
@@ -124,6 +159,16 @@ class Machine:
             self.accepts = True  # sockets
             self.obeys = True  # jogs when told to
             self.silent = False
+
+    def become(self, shape: str) -> None:
+        """Another robot, before a page is opened: a key of SHAPES."""
+        state, robot = json.loads(json.dumps(SHAPES[shape]))
+        limits = self.robot["limits"]["joint"]
+        joints = robot["joints"]
+        for name, values in limits.items():
+            limits[name] = (values * 2)[:joints]
+        self.robot.update(robot)
+        self.set(**state)
 
     def set(self, **fields: Any) -> None:
         with self.lock:

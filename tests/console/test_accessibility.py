@@ -39,6 +39,19 @@ def test_axe_finds_nothing(
         assert [(v["id"], [n["html"][:100] for n in v["nodes"]]) for v in found] == []
 
 
+@pytest.mark.parametrize("shape", ["planar", "tool"])
+def test_axe_finds_nothing_with_other_robots(
+    open_page: Callable[..., Page], machine: Any, shape: str
+) -> None:
+    machine.become(shape)
+    page = open_page(390, 844, reduced_motion="reduce")
+    for click in (None, "[data-frame=joints]", ".tabs [data-view=pose]"):
+        if click is not None:
+            page.locator(click).click()
+        found = Axe().run(page, context={"exclude": [["#scene"]]}).response["violations"]
+        assert [(v["id"], [n["html"][:100] for n in v["nodes"]]) for v in found] == []
+
+
 def test_focus_can_be_seen(open_page: Callable[..., Page]) -> None:
     page = open_page()
     page.keyboard.press("Tab")

@@ -59,6 +59,18 @@ def check_everywhere(page: Page, size: tuple[int, int]) -> None:
         assert page.evaluate(SIDEWAYS) == [], click
 
 
+@pytest.mark.parametrize("shape", ["planar", "tool"])
+@pytest.mark.parametrize("text", ["100%", "200%"])
+@pytest.mark.parametrize("size", SIZES)
+def test_every_control_of_other_robots_can_be_reached(
+    open_page: Callable[..., Page], machine: Any, size: tuple[int, int], text: str, shape: str
+) -> None:
+    machine.become(shape)
+    page = open_page(*size)
+    page.evaluate(f"document.documentElement.style.fontSize = '{text}'")
+    check_everywhere(page, size)
+
+
 @pytest.mark.parametrize("theme", ["light", "dark"])
 @pytest.mark.parametrize("size", SIZES)
 def test_every_control_can_be_reached(
@@ -95,14 +107,14 @@ def test_a_browser_set_to_large_type_hides_nothing(
     assert page.evaluate(SIDEWAYS) == []
 
 
-@pytest.mark.parametrize("joints", [2, 3, 4])
+@pytest.mark.parametrize("shape", ["planar", None, "tool"])
 @pytest.mark.parametrize("fault", [None, LONG_FAULT])
 def test_the_whole_console_fits_a_laptop(
-    open_page: Callable[..., Page], machine: Any, joints: int, fault: str | None
+    open_page: Callable[..., Page], machine: Any, shape: str | None, fault: str | None
 ) -> None:
-    angles = [10.0] * joints
-    machine.set(fault=fault, mode="fault" if fault else "idle", theta_deg=angles)
-    machine.robot["joints"] = joints
+    if shape is not None:
+        machine.become(shape)
+    machine.set(fault=fault, mode="fault" if fault else "idle")
     page = open_page(1280, 800)
     for click in [None, *views(1280, 800)]:
         if click is not None:
@@ -146,10 +158,13 @@ def test_the_stops_stand_apart(open_page: Callable[..., Page], size: tuple[int, 
     assert estop["x"] - (stop["x"] + stop["width"]) >= 16
 
 
+@pytest.mark.parametrize("shape", ["planar", None, "tool"])
 @pytest.mark.parametrize("size", SIZES[1:])
 def test_jogging_needs_no_scrolling_on_a_phone(
-    open_page: Callable[..., Page], size: tuple[int, int]
+    open_page: Callable[..., Page], machine: Any, size: tuple[int, int], shape: str | None
 ) -> None:
+    if shape is not None:
+        machine.become(shape)
     page = open_page(*size, has_touch=True, is_mobile=True)
     for button in page.locator("#jog button, #jog input").all():
         box = button.bounding_box()
