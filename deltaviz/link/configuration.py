@@ -12,6 +12,7 @@ from deltaviz.link.messages import Configure, Options, RobotKind
 from deltaviz.link.wire.codec import encode
 
 if TYPE_CHECKING:  # the simulated board's process needs the hash, and none of the robots' imports
+    from deltaviz.mechanism import Mechanism
     from deltaviz.robots import Robot
 
 P_UNIT = 1024  # 2^-10 microsteps in one microstep
@@ -72,28 +73,53 @@ def _options(robot: Robot) -> Options:
 
 
 def _kind(robot: Robot) -> RobotKind:
-    from deltaviz.mechanism import RotaryDelta
+    from deltaviz.mechanism import FiveBar, RotaryDelta
 
-    known = isinstance(robot.mechanism, RotaryDelta) and not robot.tool_axis
-    return RobotKind.ROTARY_DELTA if known else RobotKind.JOINTS_ONLY
+    match robot.mechanism:
+        case RotaryDelta():
+            return RobotKind.ROTARY_DELTA
+        case FiveBar():
+            return RobotKind.FIVE_BAR
+        case _:
+            return RobotKind.JOINTS_ONLY
 
 
 def _geometry(robot: Robot) -> dict[str, tuple[float, ...]]:
-    from deltaviz.mechanism import RotaryDelta
+    """Each field with one number per joint: 0 for one that is no arm's."""
+    from deltaviz.robots.coordinates import SPACE, in_space
 
-    arms = robot.mechanism
-    if not isinstance(arms, RotaryDelta) or robot.tool_axis:
-        names = ("base_radius", "effector_radius", "upper_arm", "forearm", "azimuth")
-        none = (0.0,) * robot.joint_count
-        return dict.fromkeys(names, none) | {"tool_offset": (0.0,) * 3}
-    return {
-        "base_radius": _floats(arms.base_radius),
-        "effector_radius": _floats(arms.effector_radius),
-        "upper_arm": _floats(arms.upper_arm),
-        "forearm": _floats(arms.forearm),
-        "azimuth": _floats(radians(azimuth) for azimuth in arms.azimuths_deg),
-        "tool_offset": _floats(robot.tool_offset),
+    per_arm = _arms(robot.mechanism)
+    none = (0.0,) * robot.joint_count
+    fields = {
+        name: _floats((*per_arm.get(name, ()), *none)[: robot.joint_count])
+        for name in ("base_radius", "effector_radius", "upper_arm", "forearm", "azimuth")
     }
+    offset = in_space(robot.tool_offset) if per_arm else (0.0,) * len(SPACE)
+    return fields | {"tool_offset": _floats(offset)}
+
+
+def _arms(mechanism: Mechanism) -> dict[str, tuple[float, ...]]:
+    """The numbers of each arm; empty for a mechanism that the board does not know."""
+    from deltaviz.mechanism import FiveBar, RotaryDelta
+
+    match mechanism:
+        case RotaryDelta():
+            return {
+                "base_radius": mechanism.base_radius,
+                "effector_radius": mechanism.effector_radius,
+                "upper_arm": mechanism.upper_arm,
+                "forearm": mechanism.forearm,
+                "azimuth": tuple(map(radians, mechanism.azimuths_deg)),
+            }
+        case FiveBar():
+            return {
+                "base_radius": mechanism.base_half,
+                "effector_radius": mechanism.platform_half,
+                "upper_arm": mechanism.upper_arm,
+                "forearm": mechanism.forearm,
+            }
+        case _:
+            return {}
 
 
 def _microsteps(

@@ -6,27 +6,71 @@ import subprocess
 import sys
 from dataclasses import fields, replace
 from math import inf
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from deltaviz import load_robot
 from deltaviz.link.board import SimulatedBoard
+from deltaviz.link.board.parameters import parameters_from
 from deltaviz.link.configuration import configuration_hash, configure_from
 from deltaviz.link.messages import BoardState, Configured, Options, RobotKind
 from deltaviz.link.wire.codec import decode_host, encode
+from deltaviz.robots.coordinates import in_space
 
 PRESETS = ["stm32", "trossen", "zheng2023", "deltadraw", "fivebar"]
+TOOL_AXIS = Path(__file__).parents[2] / "docs" / "examples" / "stm32-tool.toml"
+ROBOTS = [*PRESETS, TOOL_AXIS]
 
 
-@pytest.mark.parametrize("name", PRESETS)
-def test_every_preset_is_a_configuration_that_the_board_takes(name):
+@pytest.mark.parametrize("name", ROBOTS)
+def test_every_robot_is_a_configuration_that_the_board_takes(name):
     configure = configure_from(load_robot(name))
     board = SimulatedBoard(start_homed=True)
     board.receive(configure)
     assert Configured(configuration_hash(configure)) in board.take()
     assert board.state is BoardState.HALTED
     assert board.homed
+
+
+@pytest.mark.parametrize(
+    ("name", "kind"), [*((name, None) for name in ROBOTS), ("fivebar", RobotKind.FIVE_BAR)]
+)
+def test_the_board_places_the_tip_where_the_robot_does(name, kind):
+    """By kinematics of its own, from the numbers that it was given."""
+    robot = load_robot(name)
+    robot = replace(robot, tool_offset=(*robot.tool_offset[:-1], -12.5))
+    configure = configure_from(robot)
+    assert configure.kind is (kind or configure.kind)
+    assert configure.kind is not RobotKind.JOINTS_ONLY
+    parameters = parameters_from(configure, tick_hz=200_000)
+    assert parameters is not None
+    theta = np.array(robot.homing.ready) + np.linspace(0.05, 0.15, robot.joint_count)
+    tip = parameters.kinematics.tip(theta[: robot.mechanism.joints])
+    assert tip == pytest.approx(in_space(robot.forward(theta).tolist()), abs=1e-3)
+
+
+def test_what_a_plane_has_not_is_unbounded():
+    configure = configure_from(load_robot("fivebar"))
+    assert configure.workspace_x == (-100, 100)
+    assert configure.workspace_z == (-240, -130)
+    assert configure.workspace_y == (-inf, inf)
+    assert configure.workspace_radius == inf
+
+
+def test_a_turning_tool_is_the_fourth_joint_and_no_arm():
+    robot = load_robot(TOOL_AXIS)
+    configure = configure_from(robot)
+    per_rad = robot.drive.microsteps_per_rad[3]
+    assert configure.kind is RobotKind.ROTARY_DELTA
+    assert len(configure.joint_min) == len(configure.upper_arm) == 4
+    assert configure.upper_arm == (125, 125, 125, 0)
+    assert configure.joint_max[3] / 1024 / per_rad == pytest.approx(np.radians(175), abs=1e-6)
+    assert configure.homing_switch[3] / per_rad == pytest.approx(np.radians(-180), abs=1e-3)
+    assert configure.homing_max_travel[3] / per_rad == pytest.approx(np.radians(370), abs=1e-3)
+    assert configure.homing_fast[3] / 65.536 / per_rad == pytest.approx(np.radians(60), rel=1e-3)
+    assert configure.homing_fast[0] != configure.homing_fast[3]
 
 
 def test_the_hash_is_the_same_in_another_process():

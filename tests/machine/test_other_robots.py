@@ -188,7 +188,7 @@ class TestTurningTool:
         bench = make_bench(named_robot("stm32-tool"), homed=False)
         bench.do(i.Enable(ME))
         bench.run_until(lambda: bench.mode is Mode.UNHOMED)
-        bench.board.plant.forced_switches[3] = False
+        bench.board.plant.force_switch(3, False)
         bench.do(i.Home(ME))
         bench.run_until(lambda: bench.mode is Mode.FAULT, within=90)
         assert "no end switch" in bench.snapshot.fault

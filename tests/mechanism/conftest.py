@@ -9,6 +9,7 @@ import pytest
 from deltaviz.mechanism import FiveBar, RotaryDelta
 
 REFERENCE = Path(__file__).parents[1] / "data" / "reference"
+FIVE_BARS = REFERENCE / "five_bar"
 
 
 @dataclass(frozen=True)
@@ -25,25 +26,23 @@ class Reference:
         return np.radians(self.column(cases, "theta_deg"))
 
 
-def _names(kind: str) -> list[str]:
-    planar = kind == "five-bar"
-    stems = sorted(path.stem for path in REFERENCE.glob("*.json"))
-    return [stem for stem in stems if stem.startswith("fivebar") == planar]
+def _names(folder: Path) -> list[str]:
+    return sorted(path.stem for path in folder.glob("*.json"))
 
 
-def _load(name: str, mechanism: type) -> Reference:
-    data = json.loads((REFERENCE / f"{name}.json").read_text())
+def _load(folder: Path, name: str, mechanism: type) -> Reference:
+    data = json.loads((folder / f"{name}.json").read_text())
     return Reference(mechanism=mechanism(**data["geometry"]), cases=data)
 
 
-@pytest.fixture(scope="module", params=_names("delta"))
+@pytest.fixture(scope="module", params=_names(REFERENCE))
 def reference(request: pytest.FixtureRequest) -> Reference:
-    return _load(request.param, RotaryDelta)
+    return _load(REFERENCE, request.param, RotaryDelta)
 
 
-@pytest.fixture(scope="module", params=_names("five-bar"))
+@pytest.fixture(scope="module", params=_names(FIVE_BARS))
 def planar_reference(request: pytest.FixtureRequest) -> Reference:
-    return _load(request.param, FiveBar)
+    return _load(FIVE_BARS, request.param, FiveBar)
 
 
 @pytest.fixture(scope="session")

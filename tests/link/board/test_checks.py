@@ -25,7 +25,7 @@ from deltaviz.link.messages import (
 )
 from tests.link.board.bench import simulated_only
 
-PRESETS = ["stm32", "trossen", "zheng2023", "deltadraw"]
+PRESETS = ["stm32", "trossen", "zheng2023", "deltadraw", "fivebar"]
 ACCELERATION = 50_000.0
 
 
