@@ -2,85 +2,22 @@
 
 from __future__ import annotations
 
-import io
 import math
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
 import pytest
-from PIL import Image
 from playwright.sync_api import Locator, Page
 
 pytestmark = pytest.mark.browser
 
 LONG = 120_000  # ms; software rendering is slow
-TRIES = 12  # of a drag that the page may break off by itself
+TRIES = 12  # of a press that the page may break off by itself
 CLOSE = 0.4  # mm: one microstep of each of the three joints
-
-
-@pytest.fixture
-def console(page: Page, served: Any) -> Page:
-    """The page, with the robot drawn and viser's panel filled."""
-    page.goto(served.url)
-    page.locator("#mode", has_text="Idle").wait_for(timeout=LONG)
-    slider(page, "θ1").wait_for(timeout=LONG)
-    return page
 
 
 def slider(page: Page, name: str) -> Locator:
     return page.frame_locator("#scene").get_by_role("slider", name=name)
-
-
-def effector_on_page(page: Page) -> tuple[float, float] | None:
-    """The middle of the blue effector, as a person would find it: by looking."""
-    box = page.locator("#scene").bounding_box()
-    assert box is not None
-    left = 300  # right of viser's panel
-    picture = page.screenshot(
-        clip={
-            "x": box["x"] + left,
-            "y": box["y"],
-            "width": box["width"] - left,
-            "height": box["height"],
-        }
-    )
-    red, green, blue = np.moveaxis(np.asarray(Image.open(io.BytesIO(picture)).convert("RGB")), 2, 0)
-    red, green, blue = (c.astype(int) for c in (red, green, blue))
-    strong = (blue - red > 90) & (blue > 110) & (green > red)
-    if strong.sum() < 200:
-        return None
-    y, x = np.nonzero(strong)
-    return box["x"] + left + float(np.median(x)), box["y"] + float(np.median(y))
-
-
-@pytest.fixture
-def drag(console: Page, served: Any, wait_for: Callable[..., Any]) -> Callable[..., None]:
-    """Press on the effector and move it by pixels, until the robot does what is wanted.
-
-    A page that cannot keep up with drawing may break its own drag off, and rightly; then the
-    effector is grabbed afresh, as a person would.
-    """
-
-    def drag_until(
-        dx: float, dy: float, condition: Callable[[dict[str, Any]], bool], *, let_go: bool = False
-    ) -> None:
-        for _ in range(TRIES):
-            x, y = wait_for(lambda: effector_on_page(console), bool, "an effector on the screen")
-            console.mouse.move(x, y)
-            console.mouse.down()
-            console.mouse.move(x + dx / 8, y + dy / 8)
-            if served.soon(lambda s: s["mode"] == "jogging"):
-                console.mouse.move(x + dx, y + dy, steps=4)
-                if let_go:
-                    console.mouse.up()
-                if served.soon(condition):
-                    return
-            console.mouse.up()
-            served.wait(lambda s: s["mode"] == "idle", "rest before the next grab")
-        raise AssertionError(f"the drag does not do what is wanted: {served.state()}")
-
-    return drag_until
 
 
 def test_dragging_the_effector_moves_the_reported_robot(

@@ -46,7 +46,8 @@ def test_the_board_places_the_tip_where_the_robot_does(name, kind):
     assert configure.kind is not RobotKind.JOINTS_ONLY
     parameters = parameters_from(configure, tick_hz=200_000)
     assert parameters is not None
-    theta = np.array(robot.homing.ready) + np.linspace(0.05, 0.15, robot.joint_count)
+    assert parameters.kinematics is not None
+    theta = [ready + 0.05 * (i + 1) for i, ready in enumerate(robot.homing.ready)]
     tip = parameters.kinematics.tip(theta[: robot.mechanism.joints])
     assert tip == pytest.approx(in_space(robot.forward(theta).tolist()), abs=1e-3)
 
