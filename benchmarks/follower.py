@@ -27,13 +27,17 @@ def _width(robot: Robot) -> float:
 
 
 def _inside(robot: Robot, rng: np.random.Generator) -> Goal:
-    half, (low, high) = 0.6 * _width(robot), robot.workspace.z
-    return ToPoint(tuple(rng.uniform([-half, -half, low], [half, half, high]).tolist()))
+    return _place(robot, rng, 0.6 * _width(robot), 0.0)
 
 
 def _beyond(robot: Robot, rng: np.random.Generator) -> Goal:
-    half, (low, high) = 1.5 * _width(robot), robot.workspace.z
-    return ToPoint(tuple(rng.uniform([-half, -half, low - 80], [half, half, high + 80]).tolist()))
+    return _place(robot, rng, 1.5 * _width(robot), 80.0)
+
+
+def _place(robot: Robot, rng: np.random.Generator, half: float, beyond: float) -> Goal:
+    across, (low, high) = len(robot.axes) - 1, robot.workspace.z
+    least, most = [-half] * across + [low - beyond], [half] * across + [high + beyond]
+    return ToPoint(tuple(rng.uniform(least, most).tolist()))
 
 
 def _angles(robot: Robot, rng: np.random.Generator) -> Goal:
@@ -41,7 +45,9 @@ def _angles(robot: Robot, rng: np.random.Generator) -> Goal:
 
 
 def _jog(robot: Robot, rng: np.random.Generator) -> Goal:
-    return AtVelocity(tuple((rng.normal(size=3) * 0.5 * robot.limits.cartesian.velocity).tolist()))
+    return AtVelocity(
+        tuple((rng.normal(size=len(robot.axes)) * 0.5 * robot.limits.cartesian.velocity).tolist())
+    )
 
 
 def _turn(robot: Robot, rng: np.random.Generator) -> Goal:

@@ -16,8 +16,14 @@ from playwright.sync_api import Browser, Page, sync_playwright
 DOCS = Path(__file__).parent
 SIZES = {"1280x800": (1280, 800), "390x844": (390, 844)}
 THEMES: tuple[Literal["light", "dark"], ...] = ("light", "dark")
-WAY = [(70, 30), (20, 80), (-60, 40), (-30, -50), (60, -30), (90, 20)]  # mm, drawn as a trail
-HEIGHT = -320
+# Each picture's name, its robot, and the way (mm) that is drawn as a trail.
+PICTURES: dict[str, tuple[str, list[tuple[float, float, float]]]] = {
+    "console": (
+        "stm32",
+        [(x, y, -320) for x, y in [(70, 30), (20, 80), (-60, 40), (-30, -50), (60, -30), (90, 20)]],
+    ),
+    "fivebar": ("fivebar", [(60, 0, -150), (80, 0, -190), (-70, 0, -210), (-50, 0, -170)]),
+}
 FLAGS = [
     "--no-sandbox",
     "--use-angle=swiftshader",
@@ -28,7 +34,13 @@ LONG = 60_000  # ms
 
 
 def main() -> None:
+    for picture, (robot, way) in PICTURES.items():
+        take_all(picture, robot, way)
+
+
+def take_all(picture: str, robot: str, way: list[tuple[float, float, float]]) -> None:
     command = [sys.executable, "-m", "deltaviz", "serve", "--port", "0", "--no-browser"]
+    command += ["--robot", robot]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as server:
         assert server.stdout is not None
         url = next(
@@ -40,14 +52,19 @@ def main() -> None:
                     executable_path="/usr/bin/chromium", args=FLAGS
                 )
                 for theme in THEMES:
-                    for name, (width, height) in SIZES.items():
-                        take(browser, url, theme, (width, height), f"console-{name}-{theme}.png")
+                    for name, size in SIZES.items():
+                        take(browser, url, theme, size, way, f"{picture}-{name}-{theme}.png")
         finally:
             server.terminate()
 
 
 def take(
-    browser: Browser, url: str, theme: Literal["light", "dark"], size: tuple[int, int], name: str
+    browser: Browser,
+    url: str,
+    theme: Literal["light", "dark"],
+    size: tuple[int, int],
+    way: list[tuple[float, float, float]],
+    name: str,
 ) -> None:
     context = browser.new_context(
         viewport={"width": size[0], "height": size[1]}, color_scheme=theme
@@ -56,27 +73,27 @@ def take(
     page.goto(url)
     page.locator("#mode", has_text="Idle").wait_for(timeout=LONG)
     page.frame_locator("#scene").locator("canvas").first.wait_for(timeout=LONG)
-    for x, y in WAY:
-        go(page, url, x, y)
-    page.wait_for_timeout(3000)  # for the pictures only: let the drawing catch up
+    for place in way:
+        go(page, url, place)
+    page.wait_for_timeout(9000)  # for the pictures only: drawing catches up, notices go
     page.screenshot(path=DOCS / name)
     context.close()
 
 
-def go(page: Page, url: str, x: float, y: float) -> None:
+def go(page: Page, url: str, place: tuple[float, float, float]) -> None:
     """Move there from the page, so that it is the page that controls."""
     page.evaluate(
-        """async ([x, y, z]) => fetch("/api/move", {method: "POST",
+        """async (xyz_mm) => fetch("/api/move", {method: "POST",
             headers: {"content-type": "application/json"},
-            body: JSON.stringify({xyz_mm: [x, y, z], speed: 0.5})})""",
-        [x, y, HEIGHT],
+            body: JSON.stringify({xyz_mm, speed: 0.5})})""",
+        list(place),
     )
     state: dict[str, Any] = {}
     end = time.monotonic() + 30
     while time.monotonic() < end:
         with urllib.request.urlopen(f"{url}/api/state") as reply:
             state = json.load(reply)
-        if state["mode"] == "idle" and abs(state["xyz_mm"][0] - x) < 1:
+        if state["mode"] == "idle" and abs(state["xyz_mm"][0] - place[0]) < 1:
             return
         time.sleep(0.02)
     raise SystemExit(f"the robot did not arrive: {state}")
