@@ -97,9 +97,11 @@ export function jogVelocity(robot, frame, direction, homed) {
  * @param {number} override
  */
 export function jogSpeedText(robot, frame, homed, override) {
-  const direction = frame === "joints" ? Array(robot.joints).fill(1) : [1, 0, 0];
-  const speed = Math.max(...jogVelocity(robot, frame, direction, homed)) * override;
-  return `${speed.toFixed(speed < 10 ? 1 : 0)} ${frame === "joints" ? "°/s" : "mm/s"}`;
+  const ofJoints = frame === "joints";
+  const direction = ofJoints ? Array(robot.joints).fill(1) : [1];
+  const speeds = jogVelocity(robot, frame, direction, homed).map((speed) => speed * override);
+  const shown = [Math.min(...speeds), Math.max(...speeds)].map((v) => v.toFixed(v < 10 ? 1 : 0));
+  return `${[...new Set(shown)].join("–")} ${ofJoints ? "°/s" : "mm/s"}`;
 }
 
 /**

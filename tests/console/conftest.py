@@ -167,6 +167,8 @@ class Machine:
         joints = robot["joints"]
         for name, values in limits.items():
             limits[name] = (values * 2)[:joints]
+        if shape == "tool":
+            limits["velocity_deg_s"][-1] = 600
         self.robot.update(robot)
         self.set(**state)
 

@@ -10,8 +10,8 @@ from playwright.sync_api import Page, expect
 
 pytestmark = pytest.mark.browser
 
-JOG = 0.25  # share of the limits at which a held jog moves: 600 mm/s, 340 °/s
-STEP_MM, TURN_DEG = 600 * JOG, 340 * JOG
+JOG = 0.25  # share of the limits at which a held jog moves
+STEP_MM, TURN_DEG = 600 * JOG, 600 * JOG  # a second: of the tip, and of the tool
 
 
 @pytest.fixture
@@ -136,6 +136,11 @@ class TestTurningTool:
         turning.get_by_role("button", name=name).hover()
         start = begun(turning.mouse.down, turning.mouse.up)
         assert start == {"frame": "joints", "v_deg_s": pytest.approx([0, 0, 0, rate])}
+
+    def test_its_speed_is_told_beside_the_arms(self, turning: Page) -> None:
+        expect(turning.locator("#jog-speed")).to_have_text("150 mm/s")
+        turning.locator("[data-frame=joints]").click()
+        expect(turning.locator("#jog-speed")).to_have_text("85–150 °/s")
 
     def test_its_key(self, turning: Page, begun: Any) -> None:
         keys = turning.keyboard
