@@ -131,6 +131,40 @@ def test_a_way_out_of_the_limits_is_refused(
     assert re.search(limit, refused)
 
 
+@pytest.mark.parametrize(
+    ("name", "target", "limit"),
+    [
+        ("fivebar", (30, 40), None),
+        ("fivebar", (-50, -50), "joint limit|workspace"),
+        ("fivebar", (80, 80), "lower end of the workspace"),
+        ("stm32-tool", (0, 0, 0, 170), None),
+        ("stm32-tool", (0, 0, 0, 176), "upper limit of the tool's turn"),
+        ("stm32-tool", (0, 0, 0, -176), "lower limit of the tool's turn"),
+    ],
+)
+def test_ways_of_other_robots(
+    named_robot: Callable[[str], Robot], name: str, target: tuple[float, ...], limit: str | None
+) -> None:
+    refused = creep_to(named_robot(name), target)
+    assert (refused is None) == (limit is None)
+    assert re.search(limit or "", refused or "")
+
+
+def test_a_brake_that_would_turn_the_tool_too_far_is_refused(
+    named_robot: Callable[[str], Robot],
+) -> None:
+    robot = named_robot("stm32-tool")
+    start = np.append(np.zeros(3), robot.joints.max[3] - 0.45)
+    guard = Guard(robot, tuple(start), homed=True)
+    rate, refused = 0.0, None
+    while refused is None:
+        start[3] += PERIOD * (rate + 0.6)
+        rate += 1.2
+        assert start[3] < robot.joints.max[3]
+        refused = guard.refusal(Knot(PERIOD, tuple(start), (0.0, 0.0, 0.0, rate)))
+    assert refused == "a brake that breaks upper limit of the tool's turn"
+
+
 def test_a_pose_on_the_other_branch_is_refused(stm32: Robot) -> None:
     """The guard's own comparison, since no lawful way leads there."""
     guard = Guard(stm32, stm32.homing.ready, homed=True)
