@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from deltaviz.robots import schema
 from deltaviz.robots.errors import Inconsistent
 
-MOST_STEPS_PER_SECOND = 100_000  # the stepper's tick is 200 kHz, and a step takes two
+# The stepper's tick is 200 kHz and a step takes two; the board keeps 0.2 % for rounding.
+MOST_STEPS_PER_SECOND = 99_800
 
 
 @dataclass(frozen=True)

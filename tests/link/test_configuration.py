@@ -17,7 +17,10 @@ from deltaviz.link.board.parameters import parameters_from
 from deltaviz.link.configuration import configuration_hash, configure_from
 from deltaviz.link.messages import BoardState, Configured, Options, RobotKind
 from deltaviz.link.wire.codec import decode_host, encode
+from deltaviz.robots import RobotFileError
 from deltaviz.robots.coordinates import in_space
+from deltaviz.robots.load import parse_robot
+from deltaviz.robots.presets import preset_text
 
 PRESETS = ["stm32", "trossen", "zheng2023", "deltadraw", "fivebar"]
 TOOL_AXIS = Path(__file__).parents[2] / "docs" / "examples" / "stm32-tool.toml"
@@ -50,6 +53,15 @@ def test_the_board_places_the_tip_where_the_robot_does(name, kind):
     theta = [ready + 0.05 * (i + 1) for i, ready in enumerate(robot.homing.ready)]
     tip = parameters.kinematics.tip(theta[: robot.mechanism.joints])
     assert tip == pytest.approx(in_space(robot.forward(theta).tolist()), abs=1e-3)
+
+
+def test_the_fastest_that_a_robot_file_may_ask_for_is_taken():
+    text = preset_text("stm32").replace("acceleration_deg_s2 = 4500", "acceleration_deg_s2 = 90000")
+    most = 360 * 99_800 / 3200
+    robot = parse_robot(text.replace("velocity_deg_s = 340", f"velocity_deg_s = {most}"))
+    assert parameters_from(configure_from(robot), tick_hz=200_000) is not None
+    with pytest.raises(RobotFileError):
+        parse_robot(text.replace("velocity_deg_s = 340", f"velocity_deg_s = {most * 1.0001}"))
 
 
 def test_what_a_plane_has_not_is_unbounded():

@@ -55,7 +55,7 @@ CHANGES = [
         "velocity_deg_s = 340",
         "velocity_deg_s = 1e6",
         "limits.joint.velocity_deg_s",
-        "100000 steps a sec",
+        "99800 steps a sec",
     ),
     ("velocity_deg_s = 340", "velocity_deg_s = 10", "homing.fast_deg_s", "at most limits.joint"),
     (

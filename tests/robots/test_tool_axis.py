@@ -8,6 +8,7 @@ import pytest
 from deltaviz.mechanism import Margin, MarginKind
 from deltaviz.robots import RobotFileError
 from deltaviz.robots.load import parse_robot
+from deltaviz.robots.presets import preset_text
 
 
 def test_the_joint_is_appended(tool_robot, stm32):
@@ -143,8 +144,32 @@ def test_what_is_wrong_and_where(tool_text, before, after, field, says):
         parse_robot(tool_text.replace(before, after))
 
 
-def test_a_five_bar_has_none():
-    from deltaviz.robots.presets import preset_text
+def test_with_servos_it_is_a_servo():
+    tool = """
+[tool_axis]
+min_deg = -90
+max_deg = 90
+[tool_axis.limits]
+velocity_deg_s = 250
+acceleration_deg_s2 = 3000
+unhomed_velocity_deg_s = 5
+[tool_axis.drive]
+DRIVE
+[tool_axis.homing]
+switch_deg = -95
+fast_deg_s = 20
+slow_deg_s = 2
+backoff_deg = 5
+max_travel_deg = 200
+ready_deg = 0
+"""
+    text = preset_text("deltadraw") + tool
+    robot = parse_robot(text.replace("DRIVE", "resolution_deg = 0.1"))
+    assert robot.drive.microsteps_per_rad[3] == pytest.approx(3600 / (2 * np.pi))
+    with pytest.raises(RobotFileError, match=r"tool_axis.drive.resolution_deg = missing: needed"):
+        parse_robot(text.replace("DRIVE", ""))
 
+
+def test_a_five_bar_has_none():
     with pytest.raises(RobotFileError, match="tool_axis is not a known field"):
         parse_robot(preset_text("fivebar") + "\n[tool_axis]\nmin_deg = 0\n")
