@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 import ruckig
@@ -35,6 +35,19 @@ class Request:
     max_acceleration: Array
     max_jerk: Array
     together: bool
+
+    def __add__(self, other: Self) -> Request:
+        """Both motions at once, each on its own axes."""
+        return Request(
+            displacement=np.append(self.displacement, other.displacement),
+            velocity=np.append(self.velocity, other.velocity),
+            acceleration=np.append(self.acceleration, other.acceleration),
+            held=self.held + other.held,
+            max_velocity=np.append(self.max_velocity, other.max_velocity),
+            max_acceleration=np.append(self.max_acceleration, other.max_acceleration),
+            max_jerk=np.append(self.max_jerk, other.max_jerk),
+            together=self.together and other.together,
+        )
 
 
 class Generator:

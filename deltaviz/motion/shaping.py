@@ -15,7 +15,7 @@ import numpy as np
 from deltaviz.motion.compiled import compiled
 from deltaviz.motion.followed import Array
 from deltaviz.motion.otg import Generator, Request
-from deltaviz.motion.space import CartesianSpace, JointSpace, Space
+from deltaviz.motion.space import CartesianSpace, Group, JointSpace, Space
 
 ASIDE = 0.05  # least share of the limits for an axis that has nothing to do
 ACROSS = 0.3  # of the velocity limit: what an axis across the way may use
@@ -73,7 +73,7 @@ class Shaper:
     ) -> tuple[Array, Array, Array] | None:
         """Position, velocity, acceleration (K+1, d) at the knots of the motion, or None."""
         if isinstance(self._space, CartesianSpace):
-            axes, request = _tip_request(self._space, v, a, way, shares)
+            axes, request = _pose_request(self._space, v, a, way, shares)
         else:
             axes, request = _joint_request(self._space, v, a, way, shares)
         rows = self._generator(request, self._period)
@@ -82,35 +82,47 @@ class Shaper:
         return q + rows[0] @ axes, rows[1] @ axes, rows[2] @ axes
 
 
-def _tip_request(
+def _pose_request(
     space: CartesianSpace, v: Array, a: Array, way: Way, shares: Shares
 ) -> tuple[Array, Request]:
+    """The tip's motion, and beside it the tool's turn if there is one."""
     moved = way.displacement is not None
     ahead = way.displacement if way.displacement is not None else v
     tip, *turns = space.groups
+    rows, request = _tip_request(tip, ahead[tip.part], v[tip.part], a[tip.part], way, shares)
     axes = np.eye(space.axes)
-    axes[tip.part, tip.part], tip_v, tip_a = frame(ahead[tip.part], v[tip.part], a[tip.part])
-    parts = np.ones(space.axes)
-    parts[tip.part] = axis_shares(tip_v, tip_a, tip.velocity, tip.acceleration)
-    displacement, here_v, here_a = np.zeros(space.axes), v.copy(), a.copy()
-    displacement[tip.part] = _along(ahead[tip.part], moved)
-    here_v[tip.part], here_a[tip.part] = tip_v, tip_a
-    most = np.abs(here_v)
-    most[tip.part] = np.maximum(most[tip.part], ACROSS * tip.velocity * shares.velocity)
-    most[0] = float(way.speed[0]) * shares.velocity * HEADROOM
-    acceleration, jerk = parts * tip.acceleration, parts * tip.jerk
+    axes[tip.part, tip.part] = rows
     for turn, speed in zip(turns, way.speed[1:].tolist(), strict=True):
-        displacement[turn.part] = ahead[turn.part] if moved else 0.0
-        most[turn.part] = np.maximum(most[turn.part], speed * shares.velocity * HEADROOM)
-        acceleration[turn.part], jerk[turn.part] = turn.acceleration, turn.jerk
+        most = speed * shares.velocity * HEADROOM
+        request += Request(
+            displacement=ahead[turn.part] if moved else np.zeros(1),
+            velocity=v[turn.part],
+            acceleration=a[turn.part],
+            held=(moved and not way.free,),
+            max_velocity=np.maximum(np.abs(v[turn.part]), max(most, 1e-3)),
+            max_acceleration=np.array([turn.acceleration * shares.acceleration * HEADROOM]),
+            max_jerk=np.array([turn.jerk * shares.acceleration**1.5]),
+            together=False,
+        )
+    return axes, request
+
+
+def _tip_request(
+    tip: Group, ahead: Array, v: Array, a: Array, way: Way, shares: Shares
+) -> tuple[Array, Request]:
+    moved = way.displacement is not None
+    axes, here_v, here_a = frame(ahead, v, a)
+    parts = axis_shares(here_v, here_a, tip.velocity, tip.acceleration)
+    most = np.maximum(np.abs(here_v), ACROSS * tip.velocity * shares.velocity)
+    most[0] = float(way.speed[0]) * shares.velocity * HEADROOM
     return axes, Request(
-        displacement=displacement,
+        displacement=_along(ahead, moved),
         velocity=here_v,
         acceleration=here_a,
-        held=(moved, *(moved and not way.free,) * (space.axes - 1)),
+        held=(moved, *(moved and not way.free,) * (len(ahead) - 1)),
         max_velocity=np.maximum(most, 1e-3),
-        max_acceleration=acceleration * (shares.acceleration * HEADROOM),
-        max_jerk=jerk * shares.acceleration**1.5,
+        max_acceleration=parts * (tip.acceleration * shares.acceleration * HEADROOM),
+        max_jerk=parts * (tip.jerk * shares.acceleration**1.5),
         together=False,
     )
 
