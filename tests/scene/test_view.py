@@ -14,6 +14,7 @@ from deltaviz.machine.intent import FollowAngles, FollowPoint
 from deltaviz.robots import Robot
 from deltaviz.robots.coordinates import in_space
 from deltaviz.scene import colours, framing
+from deltaviz.scene.stage import outline
 from deltaviz.scene.trail import SEGMENTS, TrailPoints
 
 Visit = Callable[[str | None], Any]
@@ -295,6 +296,13 @@ def test_the_trail_is_as_long_as_it_is(steady: np.random.Generator) -> None:
     assert np.allclose(segments[1:, 0], segments[:-1, 1])  # one line
     trail.pass_through(tuple(points[-1]), now + 60.0)
     assert np.allclose(trail.segments(), points[-1])  # long forgotten
+
+
+def test_the_outline_of_a_planar_workspace_is_a_rectangle_in_its_plane(planar_robot: Robot) -> None:
+    corners = outline(planar_robot).reshape(-1, 3)
+    assert not corners[:, 1].any()
+    assert np.unique(corners[:, 0]) == pytest.approx([-0.1, 0.1])
+    assert np.unique(corners[:, 2]) == pytest.approx([-0.24, -0.13])
 
 
 @pytest.mark.parametrize(("reach", "depth"), [(0.24, (-0.44, -0.225)), (0.62, (-0.9, -0.65))])
