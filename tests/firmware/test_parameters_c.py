@@ -21,6 +21,7 @@ from tests.firmware import c_library
 from tests.firmware.two_judges import TICK_HZ, gantry
 
 PRESETS = ["stm32", "trossen", "zheng2023", "deltadraw"]
+TOOL_AXIS = Path(__file__).parents[2] / "docs" / "examples" / "stm32-tool.toml"
 STM32 = configure_from(load_robot("stm32"))
 
 TOP_VELOCITY = TICK_HZ * 65536 // 2004  # a step in 2.004 ticks
@@ -59,20 +60,21 @@ def changes(draw: st.DrawFn, configure: Configure) -> dict[str, Any]:
     return changed
 
 
-@pytest.mark.parametrize("name", PRESETS)
+@pytest.mark.parametrize("name", [*PRESETS, "fivebar", TOOL_AXIS])
 def test_what_follows_from_a_configuration(name):
-    configure = configure_from(load_robot(name))
+    robot = load_robot(name)
+    configure = configure_from(robot)
     theirs = parameters_from(configure, tick_hz=TICK_HZ)
     ours = c_library.parameters_from(configure, tick_hz=TICK_HZ)
     assert theirs is not None
     assert ours is not None
-    assert tuple(ours.accelerations[:3]) == theirs.accelerations
-    for i in range(3):
+    assert tuple(ours.accelerations[: robot.joint_count]) == theirs.accelerations
+    for i in range(robot.joint_count):
         assert ours.acceleration[i] == pytest.approx(configure.acceleration[i] * 1e6 / 2**24)
         assert ours.velocity[i] == pytest.approx(configure.velocity[i] * 1000 / 65536)
         assert ours.unhomed_velocity[i] <= ours.velocity[i]
-    assert ours.arms == 3
-    assert ours.handedness == 1
+    assert ours.arms == robot.mechanism.joints
+    assert ours.handedness == 1 or name == "fivebar"
 
 
 def test_before_homing_no_joint_is_faster_than_after():
