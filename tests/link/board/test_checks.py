@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import inf, nan
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -25,6 +26,7 @@ from deltaviz.link.messages import (
 )
 from tests.link.board.bench import simulated_only
 
+TOOL_AXIS = Path(__file__).parents[3] / "docs" / "examples" / "stm32-tool.toml"
 PRESETS = ["stm32", "trossen", "zheng2023", "deltadraw", "fivebar"]
 ACCELERATION = 50_000.0
 
@@ -120,10 +122,10 @@ def test_outside_its_limits_it_accepts_only_the_way_in(make_configure):
     assert judge(-1020, -1021) == Objection(Refusal.JOINT_LIMIT, 0)
 
 
-@pytest.fixture
-def delta(make_bench):
-    """The default robot, homed; a move in joint space that leaves its workspace."""
-    robot = load_robot("stm32")
+@pytest.fixture(params=["stm32", "fivebar", TOOL_AXIS], ids=str)
+def guarded(request, make_bench):
+    """A robot of each kind, homed; a move in joint space that leaves its workspace."""
+    robot = load_robot(request.param)
     return make_bench(configure_from(robot)), robot
 
 
@@ -147,8 +149,8 @@ def fall(bench, robot, ms=3000):
     return robot.forward(np.array(bench.board.counts) / per_rad)
 
 
-def test_it_brakes_before_it_leaves_the_workspace(delta):
-    bench, robot = delta
+def test_it_brakes_before_it_leaves_the_workspace(guarded):
+    bench, robot = guarded
     tip = fall(bench, robot)
     assert {reason for reason, _ in reasons(bench.said)} <= {
         Refusal.BRAKE,
@@ -156,14 +158,14 @@ def test_it_brakes_before_it_leaves_the_workspace(delta):
         Refusal.STATE,
     }
     assert bench.board.cause in (StopCause.BAD_SEGMENT, StopCause.UNDERRUN)
-    assert robot.workspace.z[0] - 0.5 <= tip[2] < robot.workspace.z[0] + 20
+    assert robot.workspace.z[0] - 0.5 <= tip[-1] < robot.workspace.z[0] + 20
 
 
 @simulated_only
-def test_without_its_own_workspace_check_it_would_leave(delta, monkeypatch):
+def test_without_its_own_workspace_check_it_would_leave(guarded, monkeypatch):
     monkeypatch.setattr(Checks, "_workspace_objection", lambda *_: None)
-    bench, robot = delta
-    assert fall(bench, robot)[2] < robot.workspace.z[0] - 1
+    bench, robot = guarded
+    assert fall(bench, robot)[-1] < robot.workspace.z[0] - 1
 
 
 TOP_VELOCITY = 200 * 1000 * 65536 // 2004  # a step in 2.004 ticks; 200 are a millisecond
