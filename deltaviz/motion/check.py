@@ -1,8 +1,8 @@
 """The check of a planned path, exactly as the board will run it: cubics between its knots.
 
 Checked are each cubic's end accelerations and velocity extremum, the tip's velocity and
-acceleration, the margins at every knot, between knots, and along the brake from every knot.
-Where margins are only sampled, the parabola through three samples stands for what lies between.
+acceleration at the knots and between them, the margins at every knot, between knots, and along
+the brake from every knot. What is only sampled is taken for the parabola through three samples.
 A margin that is violated at the start must never get worse: only what leads inward is legal.
 """
 
@@ -82,7 +82,7 @@ class Checker:
         is too fast for the joints is not looked at further.
         """
         kernel, count = self.kernel, len(theta) - 1
-        points, first, last, peaks = path_points(
+        points, middle, turn, peaks = path_points(
             theta, rate, duration, self.velocity, self.acceleration
         )
         if max(peaks) > 1.0:
@@ -99,9 +99,9 @@ class Checker:
         )
         fault, column = judge(margins, count, AT_KNOTS, BETWEEN)
         tip = kernel.tip_velocity(
-            np.concatenate((pose, reached[sampled:], pose[:-1], pose[1:])),
-            np.concatenate((theta, points[sampled:], theta[:-1], theta[1:])),
-            np.concatenate((rate, rate, rate, first, last)),
+            np.concatenate((pose, reached[sampled:], pose[:-1], pose[1:], reached[:count])),
+            np.concatenate((theta, points[sampled:], theta[:-1], theta[1:], points[:count])),
+            np.concatenate((rate, rate, rate, middle, middle, turn)),
         )
         speed, thrust = tip_peaks(tip, self.tip_axes, count, duration, TANGENT_STEP)
         return Verdict(

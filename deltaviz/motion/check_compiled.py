@@ -35,17 +35,19 @@ def fill_brakes(theta: Array, rate: Array, acceleration: Array, out: Array) -> N
 def path_points(
     theta: Array, rate: Array, duration: float, velocity: Array, acceleration: Array
 ) -> tuple[Array, Array, Array, tuple[float, float]]:
-    """Every pose whose tip the check needs, the cubics' end accelerations, and their peaks.
+    """Every pose whose tip the check needs, velocities, accelerations, and the cubics' peaks.
 
     Poses: K middles, K * BRAKE_POINTS of brakes (of rows 1 to K), K+1 ahead along the tangent,
-    K+1 behind. Peaks are shares of the limits.
+    K+1 behind, and as many of both for the middles. Velocities (K, n): at the middles.
+    Accelerations (3K, n): at the first knots, the last ones, the middles. Peaks are shares of the
+    limits.
     """
     rows, joints = theta.shape
     count = rows - 1
     brakes = count * BRAKE_POINTS
-    points = np.empty((count + brakes + 2 * rows, joints))
-    first = np.empty((count, joints))
-    last = np.empty((count, joints))
+    points = np.empty((count + brakes + 2 * (rows + count), joints))
+    middle = np.empty((count, joints))
+    turn = np.empty((3 * count, joints))
     fastest = 0.0
     hardest = 0.0
     for k in range(count):
@@ -55,8 +57,10 @@ def path_points(
             mean = (theta[k + 1, i] - theta[k, i]) / duration
             a0 = (6 * mean - 4 * v0 - 2 * v1) / duration
             a1 = (2 * v0 + 4 * v1 - 6 * mean) / duration
-            first[k, i] = a0
-            last[k, i] = a1
+            turn[k, i] = a0
+            turn[count + k, i] = a1
+            turn[2 * count + k, i] = 0.5 * (a0 + a1)
+            middle[k, i] = v0 + duration * (3 * a0 + a1) / 8
             peak = max(abs(v0), abs(v1))
             if a0 * a1 < 0:
                 u = a0 / (a0 - a1)
@@ -70,7 +74,12 @@ def path_points(
         for i in range(joints):
             points[base + k, i] = theta[k, i] + TANGENT_STEP * rate[k, i]
             points[base + rows + k, i] = theta[k, i] - TANGENT_STEP * rate[k, i]
-    return points, first, last, (fastest, hardest)
+    base += 2 * rows
+    for k in range(count):
+        for i in range(joints):
+            points[base + k, i] = points[k, i] + TANGENT_STEP * middle[k, i]
+            points[base + count + k, i] = points[k, i] - TANGENT_STEP * middle[k, i]
+    return points, middle, turn, (fastest, hardest)
 
 
 @compiled
@@ -133,38 +142,52 @@ def first_bad_brake(margins: Array, between: float) -> int:
 
 
 @compiled
+def thrust(tip: Array, axes: int, push: int, ahead: int, behind: int, step: float) -> float:
+    """The tip's acceleration: what the joints' gives, and what their velocities bend."""
+    square = 0.0
+    for i in range(axes):
+        bent = (tip[ahead, i] - tip[behind, i]) / (2 * step)
+        square += (tip[push, i] + bent) ** 2
+    return np.sqrt(square)
+
+
+@compiled
 def tip_peaks(
     tip: Array, axes: int, count: int, duration: float, step: float
 ) -> tuple[float, float]:
     """The tip's largest speed and acceleration (norms over its `axes`).
 
-    Rows: velocities at the K+1 knots, ahead of them, behind them; then the end accelerations of
-    the K cubics mapped by the Jacobian, at their first and last knots. Where the speed rises at
-    the one end of a segment and falls at the other, it has its peak between.
+    Rows: velocities at the K+1 knots, ahead of them, behind them, ahead of the K middles, behind
+    them; then the accelerations of the K cubics mapped by the Jacobian, at their first and last
+    knots and their middles. Where the speed rises at the one end of a segment and falls at the
+    other, it has its peak between; the acceleration's is that of the parabola through three.
     """
     rows = count + 1
+    middles = 3 * rows
+    pushes = middles + 2 * count
     fastest = 0.0
     hardest = 0.0
     speed = np.zeros(2)
     slope = np.zeros(2)
+    force = np.zeros(2)
     for k in range(count):
         for end in range(2):
             knot = k + end
-            thrust = 0.0
+            push = pushes + end * count + k
+            force[end] = thrust(tip, axes, push, rows + knot, 2 * rows + knot, step)
             square = 0.0
             along = 0.0
             for i in range(axes):
                 bent = (tip[rows + knot, i] - tip[2 * rows + knot, i]) / (2 * step)
-                push = tip[3 * rows + end * count + k, i] + bent
-                thrust += push * push
                 square += tip[knot, i] * tip[knot, i]
-                along += push * tip[knot, i]
-            hardest = max(hardest, thrust)
+                along += (tip[push, i] + bent) * tip[knot, i]
             speed[end] = np.sqrt(square)
             slope[end] = along / speed[end] if square > 0.0 else 0.0
             fastest = max(fastest, speed[end])
+        between = thrust(tip, axes, pushes + 2 * count + k, middles + k, middles + count + k, step)
+        hardest = max(hardest, -lowest(-force[0], -between, -force[1]))
         if slope[0] > 0.0 and slope[1] < 0.0:
             half = 0.5 * duration / (slope[0] - slope[1])
             for end in range(2):
                 fastest = max(fastest, speed[end] + slope[end] * slope[end] * half)
-    return fastest, np.sqrt(hardest)
+    return fastest, hardest

@@ -53,6 +53,14 @@ def test_limits_are_reached(judge: Judge, take_ride: TakeRide, name: str) -> Non
     assert all(share >= 0.2 for share in shares.values()), shares
 
 
+def test_the_tip_accelerates_most_between_two_knots(judge: Judge, take_ride: TakeRide) -> None:
+    """A motion of the joints on which that is half a per cent more than at either knot."""
+    ride = take_ride("stm32-tool", seed=109, mode="mixed", ticks=100, hold=(1, 80))
+    finding = judge("stm32-tool")(ride)
+    assert finding.broken == {}
+    assert finding.peaks["tip acceleration"] > 0.99
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("name", ROBOTS)
 @pytest.mark.parametrize("mode", MODES)
