@@ -120,6 +120,8 @@ def test_what_was_asked_for_before_a_stop_does_not_happen_after_it(
     answer = before.result(PATIENCE)
     assert isinstance(answer, i.Refused)
     assert "stopped" in answer.detail
+    answered = time.monotonic()
+    wait_for(lambda: shared.snapshot.at > answered, "a picture that knows of the stop")
     wait_for(lambda: shared.snapshot.mode is Mode.IDLE or shared.snapshot.link.problem, "rest")
     if shared.snapshot.mode is Mode.IDLE:
         fresh = shared.post(i.MoveToPoint(ME, (x + 5, y, z), 1.0)).result(PATIENCE)
