@@ -12,6 +12,7 @@ from deltaviz.link.messages import (
     PROTOCOL_VERSION,
     Arm,
     BoardState,
+    CartesianSegment,
     Enable,
     EStop,
     Hello,
@@ -19,8 +20,10 @@ from deltaviz.link.messages import (
     HostMessage,
     Keep,
     Reset,
+    RobotKind,
     Segment,
     Stop,
+    StopCause,
     Tool,
 )
 from deltaviz.link.wire.frames import write_frame
@@ -75,6 +78,13 @@ class Player:
             self.index, self.t_end = 0, self._now
             self.p, self.v = [float(count) for count in counts], [0.0] * len(counts)
 
+    def _old_arm(self) -> None:
+        """At rest, with the epoch that was open."""
+        self.pair.send(Stop())
+        self.pair.advance(100 * MS)
+        self._get_ready()
+        self._arm(0, 0)
+
     def _move(self, pushes: Sequence[int], ms: int, segments: int, wait: int) -> None:
         if len(self.p) != len(self.pair.configure.ready):
             return
@@ -101,6 +111,12 @@ class Player:
         self._move([5, -5], 10, 10, ticks)
         self._command(command)
 
+    def _tip(self, ms: int) -> None:
+        """Where no tip is known; what follows from one is single precision's."""
+        if self.pair.configure.kind is RobotKind.JOINTS_ONLY or not self.pair.simulated.homed:
+            when = (self.epoch, self.index, (self._now + ms * MS) & MASK, ms * MS, self._now)
+            self.pair.send(CartesianSegment(*when, (0, 0, -77_000_000), (0, 0, 0)))
+
     def _wait(self, ticks: int) -> None:
         self.pair.advance(ticks)
 
@@ -110,10 +126,10 @@ class Player:
         self._keep(0)
         self.pair.advance(160 * MS)
 
-    def _home(self, ms: int) -> None:
-        """From rest; under way, or done, after `ms`."""
+    def _home(self, ms: int, stuck: bool | None) -> None:
+        """From rest; under way, or done, after `ms`. `stuck`: what the first switch reads then."""
         for joint in range(4):
-            self._inputs(joint, None, False)
+            self._inputs(joint, None if joint else stuck, False)
         self.pair.send(Stop())
         self.pair.advance(100 * MS)
         self._get_ready()
@@ -251,14 +267,16 @@ def _steps() -> st.SearchStrategy[tuple[Any, ...]]:
         step("get_ready"),
         step("arm", later, off),
         step("arm", st.just(1), st.just(0)),
+        step("old_arm"),
         step("move", pushes, ms, st.integers(1, 8), ticks),
         step("move", pushes, ms, st.integers(1, 8), ticks),
         step("move", pushes, ms, st.integers(1, 70), ticks),
         step("spoilt", pushes, ms, field, amount),
+        step("tip", ms),
         step("wait", ticks),
         step("wait", st.integers(0, 40_000)),
         step("keep", st.sampled_from([0, 1, 200, 29_799, 29_800, 29_999, 30_000, -1]) | ticks),
-        step("home", st.sampled_from([50, 300, 2500])),
+        step("home", st.sampled_from([50, 300, 2500]), st.sampled_from([None, None, True, False])),
         step("interrupt", ticks, st.sampled_from([Stop(), Stop(), Enable(on=False), EStop()])),
         step("interrupt", ticks, st.sampled_from(commands)),
         step("run_into_switch", joints, ticks),
@@ -288,6 +306,26 @@ def scripts(*, most: int = 40) -> st.SearchStrategy[Script]:
         now=st.sampled_from([1000, 2**32 - 4000, 2**31 - 5001]),
         steps=st.lists(_steps(), min_size=15, max_size=most),
     )
+
+
+# Each ends a motion in another way.
+SITUATIONS = {
+    StopCause.HOST_STOP: [("interrupt", 1317, Stop())],
+    StopCause.UNDERRUN: [("move", [5, -3], 10, 5, 6000), ("wait", 20_000)],
+    StopCause.LEASE: [("move", [1], 50, 20, 7), ("silence", 0)],
+    StopCause.BAD_SEGMENT: [("move", [5], 10, 5, 777), ("spoilt", [1], 10, "t_end", 1)],
+    StopCause.LIMIT_SWITCH: [("run_into_switch", 1, 3001), ("wait", 10_000)],
+    StopCause.ESTOP: [("interrupt", 4321, EStop()), ("get_ready",)],
+    StopCause.DISABLED: [("interrupt", 2468, Enable(on=False)), ("wait", 20_000)],
+    StopCause.HOMED: [("home", 2500, None), ("arm", 1, 0), ("move", [2], 10, 5, 2000)],
+    StopCause.HOMING_FAILED: [("home", 2500, True), ("wait", 2000)],
+}
+
+
+def situations() -> list[Script]:
+    """Of every make, and across the wraps of the counter."""
+    starts = [(True, 0, 1000), (False, 1, 2**32 - 4000), (True, 2, 2**31 - 5001)]
+    return [Script(*start, steps) for steps in SITUATIONS.values() for start in starts]
 
 
 def play(script: Script) -> Pair:

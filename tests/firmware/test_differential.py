@@ -8,7 +8,6 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from collections import Counter
 from typing import Any
 
 import pytest
@@ -21,8 +20,9 @@ from deltaviz.link.board import turn
 from deltaviz.link.board.lease import Lease
 from deltaviz.link.board.paths import Ramp
 from deltaviz.link.messages import BoardState, StopCause
+from tests.firmware.both_boards import Pair
 from tests.firmware.c_board import make
-from tests.firmware.scripts import Player, Script, play, scripts
+from tests.firmware.scripts import Script, play, scripts, situations
 
 QUIET = [HealthCheck.function_scoped_fixture, HealthCheck.too_slow, HealthCheck.data_too_large]
 BOUNDED = settings(deadline=None, derandomize=True, database=None, suppress_health_check=QUIET)
@@ -73,27 +73,27 @@ def test_both_boards_answer_alike_for_long(script: Script) -> None:
     play(script)
 
 
-def test_the_scripts_go_everywhere(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It would prove little if nothing ever moved, braked, homed or was refused."""
-    states: Counter[BoardState] = Counter()
-    causes: Counter[StopCause] = Counter()
-    played = Player.play
+@pytest.mark.parametrize("script", situations(), ids=lambda s: f"{s.steps[0][0]}-{s.configuration}")
+def test_each_way_to_end_a_motion(script: Script) -> None:
+    play(script)
 
-    def watch(player: Player, step: tuple[Any, ...]) -> None:
-        played(player, step)
-        states[player.pair.simulated.state] += 1
-        causes[player.pair.simulated.cause] += 1
 
-    monkeypatch.setattr(Player, "play", watch)
+def test_these_are_all_the_ways(monkeypatch: pytest.MonkeyPatch) -> None:
+    """And every state is passed."""
+    states: set[BoardState] = set()
+    causes: set[StopCause] = set()
+    compared = Pair.compare
 
-    @settings(BOUNDED, max_examples=100, phases=[Phase.generate])
-    @given(script=scripts())
-    def run(script: Script) -> None:
+    def watch(pair: Pair) -> None:
+        compared(pair)
+        states.add(pair.simulated.state)
+        causes.add(pair.simulated.cause)
+
+    monkeypatch.setattr(Pair, "compare", watch)
+    for script in situations():
         play(script)
-
-    run()
-    assert set(states) == set(BoardState)
-    assert set(causes) >= set(StopCause) - {StopCause.HOMING_FAILED}
+    assert states == set(BoardState)
+    assert causes == set(StopCause)
 
 
 def a_longer_brake(patch: pytest.MonkeyPatch) -> None:
@@ -138,10 +138,10 @@ PLANTED = [
 
 @pytest.mark.parametrize("plant", PLANTED, ids=lambda plant: plant.__name__)
 def test_a_planted_difference_is_found(monkeypatch: pytest.MonkeyPatch, plant: Any) -> None:
-    """By the very scripts of the test above."""
+    """By scripts as in the test above."""
     plant(monkeypatch)
 
-    @settings(BOUNDED, max_examples=100, phases=[Phase.generate])
+    @settings(BOUNDED, max_examples=300, phases=[Phase.generate])
     @given(script=scripts())
     def search(script: Script) -> None:
         play(script)
