@@ -20,7 +20,7 @@ from deltaviz.link.socket_stream import SocketStream
 from deltaviz.link.wire.stream import Outbox
 
 MOST_AT_ONCE = TICK_HZ // 50  # 20 ms
-AT_ONCE = TICK_HZ // 1000  # 1 ms: a board hears its host while it moves, also when it catches up
+AT_ONCE = TICK_HZ // 1000  # 1 ms: while it moves a board hears its host, also when it catches up
 
 
 class Pace:
@@ -55,10 +55,11 @@ def run(board: SimulatedBoard, host: SocketStream) -> None:
         due = pace.due(time.monotonic())
         while True:
             port.feed(host.read())
-            board.advance(min(due, AT_ONCE))
+            step = min(due, AT_ONCE) if board.moving else due
+            board.advance(step)
             outbox.put(port.take())
-            due -= AT_ONCE
-            if due <= 0:
+            due -= step
+            if due == 0:
                 break
         listened_to = host.ended is None and not outbox.overflowed and os.getppid() == parent
         if listened_to:
