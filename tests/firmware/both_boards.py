@@ -38,11 +38,17 @@ JUDGES.append(Both(CONFIGURATIONS[2], load_robot("stm32").mechanism))  # type: i
 class Pair:
     """The two boards, and the numbers of a host's commands."""
 
-    def __init__(self, *, homed: bool, configuration: int, now: int) -> None:
+    def __init__(self, *, homed: bool, configuration: int, now: int, tick_hz: int) -> None:
         self.start = now
+        self.ms = tick_hz // 1000  # ticks
         self.configure = CONFIGURATIONS[configuration]
         self.judge = JUDGES[configuration]
-        options: dict[str, Any] = {"start_homed": homed, "now": now, "last_epoch": 65530}
+        options: dict[str, Any] = {
+            "start_homed": homed,
+            "now": now,
+            "last_epoch": 65530,
+            "tick_hz": tick_hz,
+        }
         self.boards = (PythonBoard(**options), CBoard(**options))
         self.host = Host(self.boards[0])
         self._readers = (FrameReader(), FrameReader())

@@ -26,12 +26,13 @@ from deltaviz.link.messages import (
     StopCause,
     Tool,
 )
+from deltaviz.link.rules import TICK_HZ
 from deltaviz.link.wire.frames import write_frame
 from tests.firmware.both_boards import CONFIGURATIONS, Pair
 from tests.firmware.two_judges import Knots
 
-MS = 200  # ticks
 MASK = 0xFFFF_FFFF
+EMULATOR_HZ = 40_000
 
 
 @dataclass
@@ -52,7 +53,7 @@ class Player:
 
     def finish(self) -> None:
         """Left alone, both come to rest, and say the same until then."""
-        self.pair.advance(500 * MS)
+        self.pair.advance(500 * self.pair.ms)
         assert not self.pair.simulated.moving
 
     # Steps.
@@ -81,7 +82,7 @@ class Player:
     def _old_arm(self) -> None:
         """At rest, with the epoch that was open."""
         self.pair.send(Stop())
-        self.pair.advance(100 * MS)
+        self.pair.advance(100 * self.pair.ms)
         self._get_ready()
         self._arm(0, 0)
 
@@ -102,7 +103,7 @@ class Player:
         self._move([5, -5], 10, 10, ticks)
         for pressed in (True, None):
             self._inputs(joint, pressed, False)
-            self.pair.advance(2 * MS)
+            self.pair.advance(2 * self.pair.ms)
 
     def _interrupt(self, ticks: int, command: HostMessage) -> None:
         """In the middle of a motion that begins here."""
@@ -114,7 +115,13 @@ class Player:
     def _tip(self, ms: int) -> None:
         """Where no tip is known; what follows from one is single precision's."""
         if self.pair.configure.kind is RobotKind.JOINTS_ONLY or not self.pair.simulated.homed:
-            when = (self.epoch, self.index, (self._now + ms * MS) & MASK, ms * MS, self._now)
+            when = (
+                self.epoch,
+                self.index,
+                (self._now + ms * self.pair.ms) & MASK,
+                ms * self.pair.ms,
+                self._now,
+            )
             self.pair.send(CartesianSegment(*when, (0, 0, -77_000_000), (0, 0, 0)))
 
     def _wait(self, ticks: int) -> None:
@@ -122,21 +129,21 @@ class Player:
 
     def _silence(self, off: int) -> None:
         """Longer than the lease, which is from about a boundary."""
-        self.pair.advance((-self._now_in_piece) % MS + MS + off)
+        self.pair.advance((-self._now_in_piece) % self.pair.ms + self.pair.ms + off)
         self._keep(0)
-        self.pair.advance(160 * MS)
+        self.pair.advance(160 * self.pair.ms)
 
     def _home(self, ms: int, stuck: bool | None) -> None:
         """From rest; under way, or done, after `ms`. `stuck`: what the first switch reads then."""
         for joint in range(4):
             self._inputs(joint, None if joint else stuck, False)
         self.pair.send(Stop())
-        self.pair.advance(100 * MS)
+        self.pair.advance(100 * self.pair.ms)
         self._get_ready()
         self.pair.send(Home())
         for _ in range(ms // 50):
-            self.pair.advance(50 * MS)
-            self._keep(5 * MS)
+            self.pair.advance(50 * self.pair.ms)
+            self._keep(5 * self.pair.ms)
 
     def _inputs(self, joint: int, pressed: bool | None, estop: bool) -> None:
         for board in self.pair.boards:
@@ -168,7 +175,7 @@ class Player:
 
     @property
     def _now_in_piece(self) -> int:
-        return (self._now - self.pair.start) % (1 << 32) % MS
+        return (self._now - self.pair.start) % (1 << 32) % self.pair.ms
 
     def _one_segment(self, pushes: Sequence[int], ms: int, spoil: tuple[str, int]) -> None:
         """What is not taken, the host takes back."""
@@ -176,7 +183,7 @@ class Player:
         if not simulated.moving and not any(self.v):
             self.t_end = self._now
         self._next_knot(pushes, ms / 1000)
-        message = self._segment(ms * MS, *spoil)
+        message = self._segment(ms * self.pair.ms, *spoil)
         taken = False
         if self._is_clear(message):
             self.pair.send(message)
@@ -218,10 +225,11 @@ class Player:
     def _is_clear(self, message: Segment) -> bool:
         control = self.pair.simulated._control  # its queue's knot is where the segment begins
         knot = control.queue.knot
-        if len(knot.p) != len(message.p) or not 800 <= message.duration <= 10_000:
+        ticks = message.duration * 200 // self.pair.ms  # of the judge
+        if len(knot.p) != len(message.p) or not 800 <= ticks <= 10_000:
             return True
         return self.pair.judge.is_clear(
-            Knots(knot.p, knot.v, message.p, message.v, message.duration, homed=control.homed)
+            Knots(knot.p, knot.v, message.p, message.v, ticks, homed=control.homed)
         )
 
     def _next_knot(self, pushes: Sequence[int], h: float) -> None:
@@ -295,6 +303,7 @@ class Script:
     homed: bool
     configuration: int
     now: int
+    tick_hz: int
     steps: list[tuple[Any, ...]]
 
 
@@ -304,6 +313,7 @@ def scripts(*, most: int = 40) -> st.SearchStrategy[Script]:
         homed=st.sampled_from([True, True, False]),
         configuration=st.integers(0, len(CONFIGURATIONS) - 1),
         now=st.sampled_from([1000, 2**32 - 4000, 2**31 - 5001]),
+        tick_hz=st.sampled_from([TICK_HZ, TICK_HZ, EMULATOR_HZ]),
         steps=st.lists(_steps(), min_size=15, max_size=most),
     )
 
@@ -324,13 +334,22 @@ SITUATIONS = {
 
 def situations() -> list[Script]:
     """Of every make, and across the wraps of the counter."""
-    starts = [(True, 0, 1000), (False, 1, 2**32 - 4000), (True, 2, 2**31 - 5001)]
+    starts = [
+        (True, 0, 1000, TICK_HZ),
+        (False, 1, 2**32 - 4000, EMULATOR_HZ),
+        (True, 2, 2**31 - 5001, TICK_HZ),
+    ]
     return [Script(*start, steps) for steps in SITUATIONS.values() for start in starts]
 
 
 def play(script: Script) -> Pair:
     """Raises AssertionError where the boards differ."""
-    pair = Pair(homed=script.homed, configuration=script.configuration, now=script.now)
+    pair = Pair(
+        homed=script.homed,
+        configuration=script.configuration,
+        now=script.now,
+        tick_hz=script.tick_hz,
+    )
     player = Player(pair)
     player.play(("get_ready",))
     player.play(("arm", 1, 0))

@@ -217,6 +217,25 @@ def test_out_of_reach_is_outside_the_workspace(make_bench):
         assert to_rest(bench, way, 50, start=start) == refused
 
 
+def test_out_of_reach_between_two_looks_it_brakes(make_bench):
+    """The board looks each 2 ms, and plans each ms. Between looks, at 1 ms, the tip's cubic
+    u (1 - u) (1 - 2u) leads 0.4 mm beyond what is straight arms and forearms.
+    """
+    bench = make_bench(unlimited())
+    deepest = -np.sqrt((125 + 338) ** 2 - 40**2)
+    edge, out = [0.0, 0.0, deepest + 0.030], [0.0, 0.0, -1000.0]
+    bench.arm()
+    assert reasons(bench.tip_segment(edge, out, ms=50)) == []
+    assert reasons(bench.tip_segment(edge, out, ms=4)) == []
+    bench.run(50)
+    assert bench.board.state is BoardState.ARMED
+    bench.run(1)
+    assert bench.board.state is BoardState.BRAKING
+    bench.run_to_rest()
+    assert bench.last(Stopped).cause is StopCause.BAD_SEGMENT
+    assert max(abs(count) for count in bench.board.counts) <= 3
+
+
 def test_the_workspace_ends_for_the_tip(make_bench):
     start = STM32.forward(np.zeros(3))
     bench = make_bench(unlimited(workspace_z=(float(start[2]) - 5.0, inf)))
