@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
-from math import inf
 
 import numpy as np
 import pytest
@@ -21,10 +20,11 @@ from deltaviz.link.board.checks import Checks
 from deltaviz.link.board.limits import Limits, Objection
 from deltaviz.link.board.parameters import Parameters, parameters_from
 from deltaviz.link.configuration import configure_from
-from deltaviz.link.messages import Configure, Options, RobotKind
+from deltaviz.link.messages import Configure
 from deltaviz.mechanism import RotaryDelta
 from deltaviz.mechanism.stiffness import TYPE_1_RESERVE, TYPE_2_RESERVE
 from tests.firmware import c_library
+from tests.link.board import bench
 
 TICK_HZ = 200_000
 
@@ -153,33 +153,4 @@ def preset(name: str) -> Both:
 def gantry(joints: int = 2) -> Both:
     """Joints alone: 1000 microsteps per rad, -1000 to 1500 of them, 4000/s, 50000/s²; 100/s
     until it is homed."""
-    none = (0.0,) * joints
-    configure = Configure(
-        kind=RobotKind.JOINTS_ONLY,
-        options=Options.NONE,
-        homing_direction=-1,
-        joint_min=(-1000 << 10,) * joints,
-        joint_max=(1500 << 10,) * joints,
-        velocity=(4000 * 65536 // 1000,) * joints,
-        acceleration=(round(0.05 * 2**24),) * joints,
-        unhomed_velocity=(6554,) * joints,
-        microsteps_per_rad=(1000.0,) * joints,
-        inverted=(False,) * joints,
-        homing_switch=(-1100,) * joints,
-        homing_fast=(131072,) * joints,
-        homing_slow=(13107,) * joints,
-        homing_backoff=(50,) * joints,
-        homing_max_travel=(3000,) * joints,
-        ready=(0,) * joints,
-        base_radius=none,
-        effector_radius=none,
-        upper_arm=none,
-        forearm=none,
-        azimuth=none,
-        tool_offset=(0.0, 0.0, 0.0),
-        workspace_x=(-inf, inf),
-        workspace_y=(-inf, inf),
-        workspace_z=(-inf, inf),
-        workspace_radius=inf,
-    )
-    return Both(configure)
+    return Both(bench.gantry(joints, ready=(0.0,) * joints))
