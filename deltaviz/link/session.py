@@ -2,36 +2,37 @@
 
 A session lasts from one opening of a link to its closing. It greets the board, gives it the
 robot's configuration, names epochs, arms, keeps the board's lease, and repeats a stop until the
-board rests. It never arms by itself: `begin` is called when a person begins a motion.
+board rests. It never arms by itself: `begin` is called when a person begins a motion. Which state
+follows which stands in `session_states`, every time-out in `timing`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from enum import Enum
+from collections.abc import Callable, Sequence
 
 from deltaviz.link import messages as m
+from deltaviz.link import problems
 from deltaviz.link.flight import Flight
-from deltaviz.link.rules import LEASE_MS, since
+from deltaviz.link.rules import since
+from deltaviz.link.session_states import MOTIONS, PHASES, Motion, News, Phase, Turn
+from deltaviz.link.timing import (
+    ANSWER_WITHIN,
+    GREETING_WITHIN,
+    HELLO_REPEAT,
+    KEEP_PERIOD,
+    NEVER_ARMED,
+    SILENT_AFTER,
+    STALE,
+    STOP_REPEAT,
+)
 from deltaviz.motion.knot import CartesianKnot, Knot
-
-STOP_REPEAT = 0.010  # s
-KEEP_PERIOD = 0.025  # s, well within the board's lease
-HELLO_REPEAT = 0.5  # s; a board that is still starting misses the first
-ANSWER_WITHIN = 1.0  # s, for what the board answers at once
-NEVER_ARMED = 0.1  # s of board time after a stop: an Arm before it has come by then or was lost
-STALE = LEASE_MS / 1000  # s: telemetry older than this can begin and continue no motion
-
-
-class Phase(Enum):
-    GREETING = "greeting"
-    CONFIGURING = "configuring"
-    READY = "ready"
-    FAILED = "failed"
 
 
 class Session:
-    """One conversation with one board."""
+    """One conversation with one board.
+
+    `robot_of` names the robot that has a configuration of this hash, if there is one.
+    """
 
     def __init__(
         self,
@@ -40,9 +41,12 @@ class Session:
         digest: int,
         microsteps_per_rad: Sequence[float],
         now: float,
+        robot_of: Callable[[int], str | None] = lambda _: None,
     ) -> None:
         self.phase = Phase.GREETING
-        self.problem: str | None = None
+        self.motion = Motion.NONE
+        self.problem: str | None = None  # why it failed, and what to do
+        self.board: m.HelloReply | None = None
         self.telemetry: m.Telemetry | None = None
         self.stopped: m.Stopped | None = None  # the newest
         self.refused: m.Refused | None = None  # what halted the motion under way
@@ -50,20 +54,20 @@ class Session:
         self._configuration = configuration
         self._digest = digest
         self._scale = tuple(microsteps_per_rad)
-        self._opened = now
+        self._robot_of = robot_of
         self._heard = now
-        self._board: m.HelloReply | None = None
         self._epoch = 0
         self._flight: Flight | None = None
         self._ticks = 0  # board time since the first telemetry, unwrapped
-        self._pending: dict[str, float] = {}  # command: when to give up
+        self._pending: dict[str, float] = {}  # what has to be answered: when to give up
         self._settled = True  # telemetry has come since the last answer
         self._hello_next = now + HELLO_REPEAT
+        self._report_due = float("inf")
         self._underrun_epoch: int | None = None
-        self._stop_next: float | None = None
+        self._repeat_at = now  # of the stop under way
         self._stopping_epoch: int | None = None
         self._stop_tick = 0
-        self._estop_next: float | None = None
+        self._seen_homing = False
         self._kept = float("-inf")
         self._out: list[m.HostMessage] = [m.Hello(m.PROTOCOL_VERSION)]
 
@@ -71,7 +75,7 @@ class Session:
 
     @property
     def ready(self) -> bool:
-        return self.phase is Phase.READY and self.telemetry is not None
+        return self.phase is Phase.READY
 
     @property
     def homed(self) -> bool:
@@ -103,36 +107,31 @@ class Session:
     @property
     def board_time(self) -> float | None:
         """Seconds of board time since the first telemetry, as last reported."""
-        return None if self._board is None else self._ticks / self._board.tick_hz
+        return None if self.board is None else self._ticks / self.board.tick_hz
 
     def age(self, now: float) -> float | None:
         """Seconds since the last telemetry."""
         return None if self.telemetry is None else max(0.0, now - self._heard)
 
-    def silence(self, now: float) -> float:
-        """Seconds since the board last said anything, or since the link was opened."""
-        return now - self._heard
-
     @property
     def stopping(self) -> bool:
         """A stop was sent and the board has not answered that it rests."""
-        return self._stop_next is not None
+        return self.motion is Motion.STOPPING
 
     @property
     def estopping(self) -> bool:
         """An e-stop was sent and the board has not reported it."""
-        return self._estop_next is not None
+        return self.motion is Motion.ESTOPPING
 
     @property
     def settled(self) -> bool:
         """Whether the telemetry shows what came of every command that is answered at once."""
-        owed = self._pending.keys() - {"home"}
-        return self._settled and not owed and not self.estopping
+        return self._settled and not self._pending and not self.estopping
 
     @property
     def homing(self) -> bool:
         """Homing was asked for and has neither ended nor failed."""
-        return "home" in self._pending
+        return self.motion is Motion.HOMING
 
     @property
     def standing(self) -> bool:
@@ -158,13 +157,14 @@ class Session:
     def begin(self) -> None:
         """Open a new epoch at the board's counts. Only at rest, HALTED, when a person asks."""
         telemetry = self.telemetry
-        if self._board is None or telemetry is None or telemetry.state is not m.BoardState.HALTED:
+        if self.board is None or telemetry is None or telemetry.state is not m.BoardState.HALTED:
             raise RuntimeError("an epoch is opened only while the board is halted")
+        self._ask(Turn.BEGIN)
         self._epoch = (self._epoch + 1) & 0xFFFF
         self._flight = Flight(
             epoch=self._epoch,
             telemetry=telemetry,
-            tick_hz=self._board.tick_hz,
+            tick_hz=self.board.tick_hz,
             microsteps_per_rad=self._scale,
         )
         self.stopped = None
@@ -186,38 +186,39 @@ class Session:
         self._out.append(m.Keep(self.telemetry.now))
 
     def stop(self, now: float) -> None:
-        """Brake and halt; repeated until the board says that it rests."""
+        """Brake and halt; repeated until the board says that it rests. In every state."""
         if not self.stopping:
             self._stopping_epoch = None if self._flight is None else self._flight.epoch
             self._stop_tick = 0 if self.telemetry is None else self.telemetry.now
-        self._flight = None
+        self._ask(Turn.STOP)
         self.stopped = None
-        for overruled in ("home", "enable", "reset"):  # they may never be answered
+        for overruled in ("enable", "reset"):  # they may never be answered
             self._pending.pop(overruled, None)
         self._out.append(m.Stop())
-        self._stop_next = now + STOP_REPEAT
+        if self.stopping:
+            self._repeat_at = now + STOP_REPEAT
 
     def estop(self, now: float) -> None:
-        """Drivers off; repeated until the board says that they are."""
-        self._flight = None
+        """Drivers off; repeated until the board says that they are. In every state."""
+        self._ask(Turn.ESTOP)
         self._pending.clear()
-        self._stop_next = None
         self._out.append(m.EStop())
-        self._estop_next = now + STOP_REPEAT
+        self._repeat_at = now + STOP_REPEAT
 
     def enable(self, now: float, *, on: bool) -> None:
         if not on:
-            self._flight = None
+            self._ask(Turn.DISABLE)
         self._command(m.Enable(on), now + ANSWER_WITHIN)
 
     def home(self, now: float) -> None:
-        """Begin homing, which needs a live lease as any motion does."""
+        """Begin homing, which needs a live lease as any motion does. Not while stopping."""
+        self._ask(Turn.HOME)
         if self.telemetry is not None:
             self._out.append(m.Keep(self.telemetry.now))
             self._kept = now
-        self._flight = None
+        self._seen_homing = False
         self.stopped = None
-        self._command(m.Home(), float("inf"))
+        self._out.append(m.Home())
 
     def reset(self, now: float) -> None:
         self._command(m.Reset(), now + ANSWER_WITHIN)
@@ -227,16 +228,23 @@ class Session:
         if self.phase is Phase.GREETING and now >= self._hello_next:
             self._out.append(m.Hello(m.PROTOCOL_VERSION))
             self._hello_next = now + HELLO_REPEAT
-        if self._stop_next is not None and now >= self._stop_next:
-            self._out.append(m.Stop())
-            self._stop_next = now + STOP_REPEAT
-        if self._estop_next is not None and now >= self._estop_next:
-            self._out.append(m.EStop())
-            self._estop_next = now + STOP_REPEAT
-        for command, due in list(self._pending.items()):
-            if now >= due:
-                del self._pending[command]
-                self._fail(f"The board did not answer '{command}'. Connect again.")
+        if self.motion in _REPEATED and now >= self._repeat_at:
+            self._out.append(_REPEATED[self.motion])
+            self._repeat_at = now + STOP_REPEAT
+        overdue = [command for command, due in self._pending.items() if now >= due]
+        if overdue:
+            self._fail(News.UNANSWERED, problems.unanswered(overdue[0]))
+        self._listen(now)
+
+    def _listen(self, now: float) -> None:
+        """Notice that nothing comes."""
+        silence = now - self._heard
+        if self.phase is Phase.GREETING and silence >= GREETING_WITHIN:
+            self._fail(News.SILENT, problems.no_answer())
+        elif self.phase is Phase.CONFIGURED and now >= self._report_due:
+            self._fail(News.UNANSWERED, problems.not_reporting())
+        elif self.phase is Phase.READY and silence >= SILENT_AFTER:
+            self._fail(News.SILENT, problems.silent())
 
     def take(self) -> list[m.HostMessage]:
         """The messages to send now, in order."""
@@ -251,47 +259,43 @@ class Session:
                 if self.phase is Phase.GREETING:
                     self._greeted(message, now)
             case m.Configured():
-                self._configured(message.configuration)
+                self._configured(message.configuration, now)
             case m.Telemetry():
                 self._reported(message, now)
             case m.Stopped():
                 self._has_stopped(message)
             case m.Done():
-                self._answered(message.command)
+                self._done(message.command)
             case m.Refused():
                 self._was_refused(message)
 
     def _greeted(self, reply: m.HelloReply, now: float) -> None:
-        self._board = reply
+        self.board = reply
         self._epoch = reply.last_epoch
         self._heard = now
         if reply.version != m.PROTOCOL_VERSION:
-            self._fail(
-                f"The board speaks version {reply.version} of the protocol, this program "
-                f"version {m.PROTOCOL_VERSION}. Update the older of the two."
-            )
+            self._fail(News.UNFIT, problems.other_version(reply.version))
         elif reply.joints not in (0, len(self._scale)):  # 0: not configured yet
-            self._fail(
-                f"The board drives {reply.joints} joints, the robot has {len(self._scale)}. "
-                "Choose the robot that is connected."
-            )
+            self._fail(News.UNFIT, problems.other_joints(reply.joints, len(self._scale)))
         else:
-            self.phase = Phase.CONFIGURING
+            self._learn(News.FITS)
             self._command(self._configuration, now + ANSWER_WITHIN)
 
     def _answered(self, command: str) -> None:
         if self._pending.pop(command, None) is not None:
             self._settled = False
 
-    def _configured(self, digest: int) -> None:
+    def _configured(self, digest: int, now: float) -> None:
         self._answered("configure")
         if digest != self._digest:
-            self._fail(
-                "The board took another configuration than it was given. Connect again; if it "
-                "happens again, its firmware does not fit this program."
-            )
-        elif self.phase is Phase.CONFIGURING:
-            self.phase = Phase.READY
+            self._fail(News.DIFFERS, problems.other_configuration())
+        elif self._learn(News.TAKEN):
+            self._report_due = now + ANSWER_WITHIN
+
+    def _done(self, command: str) -> None:
+        self._answered(command)
+        if command == "home" and self._happens(Turn.HOMED):
+            self._settled = False
 
     def _reported(self, telemetry: m.Telemetry, now: float) -> None:
         if self.telemetry is not None:
@@ -301,24 +305,32 @@ class Session:
         self._settled = True
         if self._flight is not None:
             self._flight.acknowledge(telemetry)
-        if self.phase is Phase.READY and m.TelemetryFlags.CONFIGURED not in telemetry.flags:
-            self._fail("The board has restarted. See to its power supply, then connect again.")
+        if m.TelemetryFlags.CONFIGURED not in telemetry.flags:
+            self._fail(News.RESTARTED, problems.restarted())
+        else:
+            self._learn(News.REPORTED)
+        self._watch_motion(telemetry)
+
+    def _watch_motion(self, telemetry: m.Telemetry) -> None:
+        """What the board's state says of the motion under way."""
         if self.stopping and self._was_never_armed(telemetry):
             self._stopping_epoch = None
-        if telemetry.state in (m.BoardState.ESTOP, m.BoardState.FAULT):
-            self._stop_next = None
-            self._flight = None
-            self._pending.pop("home", None)
         if telemetry.state is m.BoardState.ESTOP:
-            self._estop_next = None
+            self._happens(Turn.ESTOPPED)
+        elif telemetry.state is m.BoardState.FAULT:
+            self._happens(Turn.FAULTED)
+        elif telemetry.state is m.BoardState.HOMING:
+            self._seen_homing = True
+        elif self._seen_homing and telemetry.state is not m.BoardState.BRAKING:
+            self._happens(Turn.ENDED)
 
     def _was_never_armed(self, telemetry: m.Telemetry) -> bool:
         """The stop overruled an Arm that was lost on its way: no answer will bear its epoch."""
         waited = since(telemetry.now, self._stop_tick)
         return (
-            self._board is not None
+            self.board is not None
             and telemetry.epoch != self._stopping_epoch
-            and waited >= NEVER_ARMED * self._board.tick_hz
+            and waited >= NEVER_ARMED * self.board.tick_hz
         )
 
     def _has_stopped(self, stopped: m.Stopped) -> None:
@@ -326,10 +338,9 @@ class Session:
         if self.stopping:
             if self._stopping_epoch not in (None, stopped.epoch):
                 return
-            self._stop_next = None
         elif self._flight is not None and stopped.epoch != self._flight.epoch:
             return
-        self._flight = None
+        self._happens(Turn.STOPPED)
         self.stopped = stopped
         if stopped.cause is m.StopCause.UNDERRUN and stopped.epoch != self._underrun_epoch:
             self._underrun_epoch = stopped.epoch  # the answer to our own stop tells it again
@@ -338,23 +349,55 @@ class Session:
     def _was_refused(self, refused: m.Refused) -> None:
         self._answered(refused.command)
         if refused.command == "configure":
-            self._fail(
-                "The board is set up for another robot and its drivers are on. Switch it off and "
-                "on again, then connect."
-            )
+            self._configuration_refused(refused)
         elif refused.of_segment:
             if self._flight is not None:
                 self.refused = refused
         else:
             self.refused = refused
             if refused.command == "arm":  # no epoch was opened, so none will be stopped
-                self._flight = None
                 self._stopping_epoch = None
+            if refused.command in ("arm", "home"):
+                self._happens(Turn.REFUSED)
+
+    def _configuration_refused(self, refused: m.Refused) -> None:
+        board = self.board
+        robot = None if board is None else self._robot_of(board.configuration)
+        self._fail(News.REFUSED, problems.set_up_for_another(robot))
 
     def _command(self, message: m.HostMessage, due: float) -> None:
         self._pending[type(message).__name__.lower()] = due
         self._out.append(message)
 
-    def _fail(self, problem: str) -> None:
-        self.phase = Phase.FAILED
-        self.problem = problem
+    # From state to state.
+
+    def _learn(self, news: News) -> bool:
+        """Whether `news` leads anywhere in this phase; if so, it has."""
+        target = PHASES.get((self.phase, news))
+        self.phase = target or self.phase
+        return target is not None
+
+    def _fail(self, news: News, problem: str) -> None:
+        if self._learn(news):
+            self._pending.clear()
+            self.problem = problem
+
+    def _happens(self, turn: Turn) -> bool:
+        """Whether `turn` means anything to the motion under way; if so, it has happened."""
+        target = MOTIONS.get((self.motion, turn))
+        if target is None:
+            return False
+        self.motion = target
+        if target is not Motion.EPOCH:
+            self._flight = None
+        return True
+
+    def _ask(self, turn: Turn) -> None:
+        if not self._happens(turn):
+            raise RuntimeError(f"{turn} is not possible while {self.motion}")
+
+
+_REPEATED: dict[Motion, m.HostMessage] = {
+    Motion.STOPPING: m.Stop(),
+    Motion.ESTOPPING: m.EStop(),
+}

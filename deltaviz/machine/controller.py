@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from deltaviz.link.messages import BoardState
-from deltaviz.link.session import STALE
+from deltaviz.link.timing import STALE
 from deltaviz.machine import intent as i
 from deltaviz.machine.activity import Kind
 from deltaviz.machine.core import CloseLink, Core, OpenLink
@@ -33,6 +33,7 @@ from deltaviz.robots import Robot, RobotFileError
 
 OVERRIDE_MAX = 1.5
 ACCEPTED = i.Accepted()
+NOT_READY = "The board is not ready yet; press again."
 ENDED = i.Refused(i.RefusalKind.MODE, "This press has ended; press again.")
 
 Command = (
@@ -131,7 +132,7 @@ class Controller(Core):
         if self._drive is not None and session.flight is not None:
             return None
         if session.telemetry.state is not BoardState.HALTED or not session.standing:
-            return "The board is not ready yet; press again."
+            return NOT_READY
         self._drive = Drive(self.robot, session, homed=session.homed, follower=self._follower)
         return None
 
@@ -230,6 +231,8 @@ class Controller(Core):
             return refused
         if isinstance(intent, i.Connect | i.Disconnect | i.SelectRobot):
             self._change_link(intent, now)
+        elif isinstance(intent, i.Home) and self._session is not None and self._session.stopping:
+            return i.Refused(i.RefusalKind.MODE, NOT_READY)
         else:
             self._command_board(intent, now)
         self._control.take(intent.client)

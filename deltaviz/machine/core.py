@@ -11,10 +11,11 @@ from dataclasses import dataclass
 
 from deltaviz.link.configuration import configuration_hash, configure_from
 from deltaviz.link.messages import BoardMessage, HostMessage
-from deltaviz.link.session import STALE, Session
+from deltaviz.link.session import Session
+from deltaviz.link.timing import STALE
 from deltaviz.machine import sentences
 from deltaviz.machine.activity import Activity, Kind
-from deltaviz.machine.board_watch import lost, reported
+from deltaviz.machine.board_watch import reported
 from deltaviz.machine.control_lease import ControlLease
 from deltaviz.machine.drive import Drive, FollowerMaker, make_follower
 from deltaviz.machine.horizon import Horizon
@@ -180,9 +181,8 @@ class Core:
         return self.mode in AT_REST and (self._session is None or not self._session.stopping)
 
     def _watch_board(self, session: Session, now: float) -> None:
-        problem = lost(session, now)
-        if problem is not None:
-            self._lose(problem, now)
+        if session.problem is not None:
+            self._lose(session.problem, now)
             return
         if session.refused is not None:
             self._board_refused(session, now)

@@ -8,47 +8,24 @@ from typing import Any
 import pytest
 
 from deltaviz.link import messages as m
-from deltaviz.link.session import KEEP_PERIOD, STALE, STOP_REPEAT, Phase, Session
+from deltaviz.link.session import Phase, Session
+from deltaviz.link.timing import KEEP_PERIOD, STALE, STOP_REPEAT
 from deltaviz.motion.knot import Knot
-
-DIGEST = 1234
-TICK_HZ = 200_000
-MS = TICK_HZ // 1000
-SCALE = (500.0, 300.0)
-CONFIGURATION = m.Configure(
-    kind=m.RobotKind.JOINTS_ONLY, options=m.Options.NONE, homing_direction=-1,
-    joint_min=(-1000, -1000), joint_max=(1000, 1000), velocity=(5, 5), acceleration=(50, 50),
-    unhomed_velocity=(1, 1), microsteps_per_rad=SCALE, inverted=(False, False),
-    homing_switch=(-1, -1), homing_fast=(1, 1), homing_slow=(1, 1), homing_backoff=(1, 1),
-    homing_max_travel=(1, 1), ready=(0, 0), base_radius=(0.0, 0.0), effector_radius=(0.0, 0.0),
-    upper_arm=(0.0, 0.0), forearm=(0.0, 0.0), azimuth=(0.0, 0.0), tool_offset=(0.0, 0.0, 0.0),
-    workspace_x=(-1.0, 1.0), workspace_y=(-1.0, 1.0), workspace_z=(-1.0, 1.0),
-    workspace_radius=1.0,
-)  # fmt: skip
-HELLO = m.HelloReply(
-    version=m.PROTOCOL_VERSION, board="b", build="1", joints=2, tick_hz=TICK_HZ, queue_places=64,
-    boot=1, last_epoch=65534, homed=True, configuration=0, last_stop=m.StopCause.BOOT,
-)  # fmt: skip
-HOMED = m.TelemetryFlags.HOMED | m.TelemetryFlags.CONFIGURED
-
-
-def telemetry(**changes: Any) -> m.Telemetry:
-    base = m.Telemetry(
-        now=1000, state=m.BoardState.HALTED, fault=m.Fault.NONE, epoch=65534, last_index=0xFFFF,
-        t_queue_end=1000, free=64, inputs=m.Inputs.NONE, flags=HOMED, counts=(100, -60),
-    )  # fmt: skip
-    return replace(base, **changes)
+from tests.link.sessions import (
+    CONFIGURATION,
+    DIGEST,
+    HELLO,
+    MS,
+    TICK_HZ,
+    new_session,
+    ready_session,
+    telemetry,
+)
 
 
 @pytest.fixture
 def session() -> Session:
-    """A session that has just become ready, at 10 s."""
-    new = Session(configuration=CONFIGURATION, digest=DIGEST, microsteps_per_rad=SCALE, now=9.9)
-    new.receive(HELLO, 10.0)
-    new.receive(m.Configured(DIGEST), 10.0)
-    new.receive(telemetry(), 10.0)
-    new.take()
-    return new
+    return ready_session()
 
 
 def knot(theta: tuple[float, ...], velocity: tuple[float, ...] = (0.0, 0.0)) -> Knot:
@@ -56,7 +33,7 @@ def knot(theta: tuple[float, ...], velocity: tuple[float, ...] = (0.0, 0.0)) -> 
 
 
 def test_it_greets_configures_and_arms_nothing_by_itself() -> None:
-    new = Session(configuration=CONFIGURATION, digest=DIGEST, microsteps_per_rad=SCALE, now=0.0)
+    new = new_session()
     assert new.take() == [m.Hello(m.PROTOCOL_VERSION)]
     new.tick(0.4)
     assert new.take() == []
@@ -88,7 +65,7 @@ def test_it_greets_configures_and_arms_nothing_by_itself() -> None:
     ],
 )
 def test_a_board_that_does_not_fit_is_told_apart(answers: list[Any], problem: str) -> None:
-    new = Session(configuration=CONFIGURATION, digest=DIGEST, microsteps_per_rad=SCALE, now=0.0)
+    new = new_session()
     for answer in answers:
         new.receive(answer, 0.1)
     assert new.phase is Phase.FAILED
@@ -271,6 +248,7 @@ def test_what_a_stop_overrules_need_not_be_answered(session: Session) -> None:
     session.enable(10.0, on=True)
     session.stop(10.1)
     session.receive(m.Stopped(epoch=0, cause=m.StopCause.HOST_STOP, now=0, counts=()), 10.1)
+    session.receive(telemetry(), 12.0)
     session.tick(12.0)
     assert session.phase is Phase.READY
 

@@ -22,13 +22,11 @@ from deltaviz.link.messages import (
     Telemetry,
     TelemetryFlags,
 )
+from deltaviz.link.timing import COMMAND_REPEAT
 from deltaviz.link.wire.codec import decode_board, encode
 from deltaviz.link.wire.commands import COMMANDS, answered_by, name_of, next_sequence
-from deltaviz.link.wire.description import load_description
 from deltaviz.link.wire.errors import Malformed
 from deltaviz.link.wire.frames import Frame, FrameReader, write_frame
-
-REPEAT = load_description().command_repeat_ms / 1000  # s
 
 
 @dataclass(slots=True)
@@ -89,7 +87,7 @@ class Delivery:
         outstanding = self._outstanding
         if outstanding is None or now < outstanding.repeat_at:
             return []
-        outstanding.repeat_at = now + REPEAT
+        outstanding.repeat_at = now + COMMAND_REPEAT
         return [outstanding.frame]
 
     def _next(self, now: float) -> list[bytes]:
@@ -99,7 +97,7 @@ class Delivery:
         self._sequence = next_sequence(self._sequence)
         type_, payload = encode(command)
         frame = write_frame(type_, self._sequence, payload)
-        self._outstanding = _Outstanding(command, self._sequence, frame, now + REPEAT)
+        self._outstanding = _Outstanding(command, self._sequence, frame, now + COMMAND_REPEAT)
         return [frame]
 
     def _is_new(self, message: BoardMessage, frame: Frame) -> bool:

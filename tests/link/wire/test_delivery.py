@@ -32,8 +32,9 @@ from deltaviz.link.messages import (
     TelemetryFlags,
     Tool,
 )
+from deltaviz.link.timing import COMMAND_REPEAT
 from deltaviz.link.wire.codec import encode
-from deltaviz.link.wire.delivery import REPEAT, Delivery
+from deltaviz.link.wire.delivery import Delivery
 from deltaviz.link.wire.frames import FrameReader, write_frame
 
 CONFIGURE = configure_from(load_robot("stm32"))
@@ -123,11 +124,11 @@ def test_a_lost_command_is_repeated_byte_for_byte_every_50_ms(wire):
     wire.lose()
     sent = wire.now
     for repetition in (1, 2, 3):
-        due = sent + repetition * REPEAT
+        due = sent + repetition * COMMAND_REPEAT
         assert wire.host.due(due - 0.001) == []
         assert wire.host.repeat_at == pytest.approx(due)
         assert wire.host.due(due) == [first]
-    assert REPEAT == 0.050
+    assert COMMAND_REPEAT == 0.050
 
 
 def test_a_command_whose_answer_was_lost_is_not_carried_out_again(wire):

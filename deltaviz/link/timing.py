@@ -1,0 +1,44 @@
+"""Every time that the host's end of a link goes by, in one place; the board's are in `rules`.
+
+Seconds by the host's clock, except where it says board time.
+"""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+from deltaviz.link.rules import LEASE_MS
+from deltaviz.link.wire.description import load_description
+
+COMMAND_REPEAT: Final = load_description().command_repeat_ms / 1000
+HELLO_REPEAT: Final = 0.5  # a board that is still starting misses the first
+STRANGE_AFTER: Final = 2.0  # of bytes that no board sends
+GREETING_WITHIN: Final = 10.0  # a simulated or emulated board is a process that has to start
+ANSWER_WITHIN: Final = 1.0  # for what the board answers at once
+SILENT_AFTER: Final = 1.0
+STALE: Final = LEASE_MS / 1000  # telemetry older than this can begin and continue no motion
+STOP_REPEAT: Final = 0.010
+KEEP_PERIOD: Final = 0.025  # well within the board's lease
+NEVER_ARMED: Final = 0.1  # board time after a stop: an Arm before it has come by then or was lost
+
+
+class Timeout(NamedTuple):
+    seconds: float
+    after: str
+    then: str
+
+
+TIMEOUTS: Final = (
+    Timeout(COMMAND_REPEAT, "a command that is not answered", "its frame is sent again, unchanged"),
+    Timeout(HELLO_REPEAT, "Hello, while greeting", "a new Hello is sent"),
+    Timeout(STRANGE_AFTER, "opening, if only bytes came that no board sends", "the session fails"),
+    Timeout(GREETING_WITHIN, "opening without a HelloReply", "the session fails"),
+    Timeout(ANSWER_WITHIN, "a command but Home, or Configured without telemetry",
+            "the session fails"),
+    Timeout(SILENT_AFTER, "the last telemetry", "the session fails"),
+    Timeout(STALE, "the last telemetry", "no motion is begun or continued: Stop"),
+    Timeout(STOP_REPEAT, "Stop or EStop, while it is not answered", "it is sent again"),
+    Timeout(KEEP_PERIOD, "the last Keep or Segment, while the robot moves", "Keep is sent"),
+    Timeout(NEVER_ARMED, "a Stop, by the board's clock",
+            "an answer that names the epoch before counts, too: the Arm never came"),
+)  # fmt: skip
