@@ -90,6 +90,11 @@ class Flight:
         ticks = max(0, queued) + sum(duration for _, duration in self._unseen)
         return max(0.0, ticks / self._tick_hz - elapsed)
 
+    @property
+    def unacknowledged(self) -> float:
+        """Seconds of motion that were sent and of which no telemetry has told."""
+        return sum(duration for _, duration in self._unseen) / self._tick_hz
+
     def free(self, telemetry: Telemetry) -> int:
         """Places in the board's queue that nothing sent will take."""
         return telemetry.free - len(self._unseen)

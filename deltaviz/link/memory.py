@@ -7,6 +7,7 @@ from collections.abc import Callable
 from deltaviz.link.board import SimulatedBoard
 from deltaviz.link.board.port import BoardPort
 from deltaviz.link.messages import BoardMessage, HostMessage
+from deltaviz.link.report import LinkReport
 from deltaviz.link.rules import TICK_HZ
 from deltaviz.link.wire.channel import Channel
 
@@ -26,6 +27,10 @@ class MemoryTransport:
     @property
     def problem(self) -> str | None:
         return None
+
+    @property
+    def report(self) -> LinkReport:
+        return self._channel.report
 
     def send(self, message: HostMessage) -> None:
         self._channel.send(message)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from deltaviz.link.impression import Impression, Kind
 from deltaviz.link.messages import PROTOCOL_VERSION
 from deltaviz.link.timing import GREETING_WITHIN, SILENT_AFTER
 
@@ -13,11 +14,40 @@ def silent() -> str:
     )
 
 
-def no_answer() -> str:
+def no_answer(impression: Impression) -> str:
+    if impression.kind is Kind.BOARD:
+        return (
+            "A board is heard, but it does not seem to hear this computer. Check the wire from "
+            "the computer's TX to the board's RX, then connect."
+        )
     return (
-        f"No board answered within {GREETING_WITHIN:g} s. Check its cable, its power and the "
-        "chosen link, then connect."
+        f"No board answered within {GREETING_WITHIN:g} s: not a byte came. Check its power and "
+        "cable (TX to RX, RX to TX), that its firmware is ours and its baud rate the link's, or "
+        "choose another link; then connect."
     )
+
+
+def strange(impression: Impression) -> str | None:
+    """What seems to be connected instead of a board; None: it may still be one."""
+    match impression.kind:
+        case Kind.TEXT:
+            return (
+                f"What is connected says '{impression.sample}': it is no board with deltaviz "
+                "firmware. Choose another link, or flash the board, then connect."
+            )
+        case Kind.ECHO:
+            return (
+                "What is connected sends back what it hears, as a modem does, or a cable whose TX "
+                "and RX touch. Check the wiring, or choose another link, then connect."
+            )
+        case Kind.NOISE:
+            return (
+                "Bytes come, but none that make sense: the baud rate is wrong, or it is another "
+                "device. Start with --link serial://DEVICE?baud=N, or choose another link, then "
+                "connect."
+            )
+        case Kind.NOTHING | Kind.BOARD:
+            return None
 
 
 def other_version(theirs: int) -> str:

@@ -13,6 +13,8 @@ from collections.abc import Callable, Sequence
 from deltaviz.link import messages as m
 from deltaviz.link import problems
 from deltaviz.link.flight import Flight
+from deltaviz.link.impression import Impression
+from deltaviz.link.objections import objection
 from deltaviz.link.rules import since
 from deltaviz.link.session_states import MOTIONS, PHASES, Motion, News, Phase, Turn
 from deltaviz.link.timing import (
@@ -24,6 +26,7 @@ from deltaviz.link.timing import (
     SILENT_AFTER,
     STALE,
     STOP_REPEAT,
+    STRANGE_AFTER,
 )
 from deltaviz.motion.knot import CartesianKnot, Knot
 
@@ -47,6 +50,7 @@ class Session:
         self.motion = Motion.NONE
         self.problem: str | None = None  # why it failed, and what to do
         self.board: m.HelloReply | None = None
+        self.impression = Impression()  # of what is connected; the caller keeps it new
         self.telemetry: m.Telemetry | None = None
         self.stopped: m.Stopped | None = None  # the newest
         self.refused: m.Refused | None = None  # what halted the motion under way
@@ -55,6 +59,7 @@ class Session:
         self._digest = digest
         self._scale = tuple(microsteps_per_rad)
         self._robot_of = robot_of
+        self._opened = now
         self._heard = now
         self._epoch = 0
         self._flight: Flight | None = None
@@ -147,10 +152,16 @@ class Session:
         return self._flight.ahead(self.telemetry, elapsed=max(0.0, now - self._heard))
 
     def wants_knot(self, now: float, *, horizon: float) -> bool:
-        """One more knot is due: less than `horizon` (s) is queued, a place is free, news is new."""
-        if self._flight is None or self.telemetry is None or now - self._heard >= STALE:
+        """One more knot is due: less than `horizon` (s) is queued, a place is free, news is new.
+
+        No more than that is ever under way, so that a stop has little to wait behind.
+        """
+        flight = self._flight
+        if flight is None or self.telemetry is None or now - self._heard >= STALE:
             return False
-        return self._flight.free(self.telemetry) > 0 and self.ahead(now) < horizon
+        if flight.free(self.telemetry) <= 0 or flight.unacknowledged >= horizon:
+            return False
+        return self.ahead(now) < horizon
 
     # What is to be done.
 
@@ -237,13 +248,17 @@ class Session:
         self._listen(now)
 
     def _listen(self, now: float) -> None:
-        """Notice that nothing comes."""
-        silence = now - self._heard
-        if self.phase is Phase.GREETING and silence >= GREETING_WITHIN:
-            self._fail(News.SILENT, problems.no_answer())
+        """Notice that nothing comes, or nothing that a board would say."""
+        waited = now - self._opened
+        if self.phase is Phase.GREETING and waited >= STRANGE_AFTER:
+            strange = problems.strange(self.impression)
+            if strange is not None:
+                self._fail(News.STRANGE, strange)
+            elif waited >= GREETING_WITHIN:
+                self._fail(News.SILENT, problems.no_answer(self.impression))
         elif self.phase is Phase.CONFIGURED and now >= self._report_due:
             self._fail(News.UNANSWERED, problems.not_reporting())
-        elif self.phase is Phase.READY and silence >= SILENT_AFTER:
+        elif self.phase is Phase.READY and now - self._heard >= SILENT_AFTER:
             self._fail(News.SILENT, problems.silent())
 
     def take(self) -> list[m.HostMessage]:
@@ -361,9 +376,13 @@ class Session:
                 self._happens(Turn.REFUSED)
 
     def _configuration_refused(self, refused: m.Refused) -> None:
-        board = self.board
-        robot = None if board is None else self._robot_of(board.configuration)
-        self._fail(News.REFUSED, problems.set_up_for_another(robot))
+        if self.board is None:
+            return
+        if refused.reason is m.Refusal.CONFIGURATION:
+            problem = objection(self._configuration, tick_hz=self.board.tick_hz)
+        else:
+            problem = problems.set_up_for_another(self._robot_of(self.board.configuration))
+        self._fail(News.REFUSED, problem)
 
     def _command(self, message: m.HostMessage, due: float) -> None:
         self._pending[type(message).__name__.lower()] = due

@@ -8,24 +8,25 @@ import subprocess
 import sys
 from pathlib import Path
 from typing import Self
+from urllib.parse import parse_qsl, urlsplit
 
-from deltaviz.link.messages import BoardMessage, HostMessage
 from deltaviz.link.socket_stream import SocketStream
-from deltaviz.link.wire.channel import Channel
+from deltaviz.link.stream_transport import StreamTransport
+from deltaviz.link.tap import Tap, untapped
+from deltaviz.link.transport import LinkError
 
 _PATIENCE = 1.5  # s: the lease (150 ms) and the longest brake, and some
 
 
-class SimTransport:
+class SimTransport(StreamTransport):
     """The host's end. `start` returns before the board has begun to answer."""
 
-    def __init__(self, process: subprocess.Popen[bytes], board: Channel) -> None:
+    def __init__(self, process: subprocess.Popen[bytes], board: socket.socket, tap: Tap) -> None:
+        super().__init__(tap(SocketStream(board)), broke=_broke, release=self._see_it_end)
         self._process = process
-        self._board = board
-        self._closed = False
 
     @classmethod
-    def start(cls, *, homed: bool = True) -> Self:
+    def start(cls, *, homed: bool = True, tap: Tap = untapped) -> Self:
         ours, theirs = socket.socketpair()
         with theirs:
             process = subprocess.Popen(
@@ -42,43 +43,38 @@ class SimTransport:
                 start_new_session=True,  # a Ctrl-C in the terminal is for the host to judge
                 env=os.environ | {"PYTHONPATH": _python_path()},
             )
-        return cls(process, Channel(SocketStream(ours)))
+        return cls(process, ours, tap)
 
     @property
     def pid(self) -> int:
         return self._process.pid
 
-    @property
-    def closed(self) -> bool:
-        return self._closed or self._board.ended is not None
-
-    @property
-    def problem(self) -> str | None:
-        if self._closed or self._board.ended is None:
-            return None
-        return f"The simulated board does not answer: {self._board.ended}. Connect again."
-
-    def send(self, message: HostMessage) -> None:
-        if not self.closed:
-            self._board.send(message)
-
-    def receive(self) -> list[BoardMessage]:
-        return [] if self._closed else self._board.receive()
-
-    def fileno(self) -> int:
-        return self._board.fileno()
-
-    def close(self) -> None:
-        """Closes our end and waits until the board has come to rest and its process has ended."""
-        if self._closed:
-            return
-        self._closed = True
-        self._board.close()
+    def _see_it_end(self) -> None:
+        """Waits until the board has come to rest and its process has ended."""
         try:
             self._process.wait(_PATIENCE)
         except subprocess.TimeoutExpired:
             self._process.kill()
             self._process.wait()
+
+
+def starts_homed(url: str) -> bool:
+    """Whether the simulated board of this URL starts enabled and homed. Raises LinkError."""
+    parts = urlsplit(url)
+    if parts.netloc or parts.path or parts.fragment:
+        raise LinkError(f"{url!r}: nothing may stand between sim:// and a question mark")
+    homed = True
+    for key, value in parse_qsl(parts.query, keep_blank_values=True):
+        if key != "homed":
+            raise LinkError(f"{url!r}: sim:// has no option {key!r}; it has homed=0 or homed=1")
+        if value not in ("0", "1"):
+            raise LinkError(f"{url!r}: homed is {value!r}; it may be 0 or 1")
+        homed = value == "1"
+    return homed
+
+
+def _broke(reason: str) -> str:
+    return f"The simulated board does not answer: {reason}. Connect again."
 
 
 def _python_path() -> str:

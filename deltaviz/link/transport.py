@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Protocol
 
 from deltaviz.link.messages import BoardMessage, HostMessage
+from deltaviz.link.report import LinkReport
 
 
 class LinkError(Exception):
@@ -26,6 +27,9 @@ class Transport(Protocol):
     def problem(self) -> str | None:
         """Why it closed by itself, for a person; None while it is open or after `close`."""
         ...
+
+    @property
+    def report(self) -> LinkReport: ...
 
     def send(self, message: HostMessage) -> None:
         """Takes a message to be sent; silently lost once closed."""

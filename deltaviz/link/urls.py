@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-from urllib.parse import SplitResult, parse_qsl, urlsplit
+from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple
+from urllib.parse import urlsplit
 
-from deltaviz.link.sim import SimTransport
+from deltaviz.link.serial_link import open_serial, serial_address
+from deltaviz.link.sim import SimTransport, starts_homed
+from deltaviz.link.tap import Tap, untapped
 from deltaviz.link.transport import LinkError, Transport
 
 if TYPE_CHECKING:
@@ -14,50 +17,49 @@ if TYPE_CHECKING:
 __all__ = ["LinkError", "check_link", "open_link"]
 
 
-def open_link(url: str, robot: Robot) -> Transport:
-    """Opens the link to a board that will drive `robot`.
+class Scheme(NamedTuple):
+    """`check` raises the LinkError that `open` would raise for a wrong URL, and opens nothing."""
+
+    check: Callable[[str], object]
+    open: Callable[[str, Robot, Tap], Transport]
+
+
+def _open_sim(url: str, robot: Robot, tap: Tap) -> Transport:
+    return SimTransport.start(homed=starts_homed(url), tap=tap)
+
+
+def _open_serial(url: str, robot: Robot, tap: Tap) -> Transport:
+    return open_serial(url, tap=tap)
+
+
+def _refuse_emulator(url: str, *_: object) -> Transport:
+    raise LinkError("The emulated board (emulate://) is not available yet. Use sim://")
+
+
+SCHEMES: dict[str, Scheme] = {
+    "sim": Scheme(starts_homed, _open_sim),
+    "emulate": Scheme(_refuse_emulator, _refuse_emulator),
+}
+OTHERS = Scheme(serial_address, _open_serial)  # whatever pyserial opens
+
+
+def open_link(url: str, robot: Robot, tap: Tap = untapped) -> Transport:
+    """Opens the link to a board that will drive `robot`; it may take seconds.
 
     Raises LinkError for a URL that is malformed or of a kind that is not there, before anything
-    is started.
+    is started, and for a link that cannot be opened.
     """
-    homed = _sim_homed(url)
-    return SimTransport.start(homed=homed)
+    return _scheme(url).open(url, robot, tap)
 
 
 def check_link(url: str) -> None:
-    """Raises the LinkError that `open_link` would raise for this URL, and opens nothing."""
-    _sim_homed(url)
+    """Raises the LinkError that `open_link` would raise for a wrong URL, and opens nothing."""
+    _scheme(url).check(url)
 
 
-def _sim_homed(url: str) -> bool:
-    """Whether the simulated board of this URL starts enabled and homed."""
+def _scheme(url: str) -> Scheme:
     try:
-        parts = urlsplit(url)
+        scheme = urlsplit(url).scheme
     except ValueError as error:
         raise LinkError(f"{url!r} is not a link: {error}. Try sim://") from None
-    if parts.scheme != "sim":
-        raise LinkError(_not_there(url, parts.scheme))
-    if parts.netloc or parts.path or parts.fragment:
-        raise LinkError(f"{url!r}: nothing may stand between sim:// and a question mark")
-    return _homed_option(url, parts)
-
-
-def _homed_option(url: str, parts: SplitResult) -> bool:
-    homed = True
-    for key, value in parse_qsl(parts.query, keep_blank_values=True):
-        if key != "homed":
-            raise LinkError(f"{url!r}: sim:// has no option {key!r}; it has homed=0 or homed=1")
-        if value not in ("0", "1"):
-            raise LinkError(f"{url!r}: homed is {value!r}; it may be 0 or 1")
-        homed = value == "1"
-    return homed
-
-
-def _not_there(url: str, scheme: str) -> str:
-    if scheme == "emulate":
-        return "The emulated board (emulate://) is not available yet. Use sim://"
-    if scheme:
-        return f"{url!r}: links to serial boards are not available yet. Use sim://"
-    return (
-        f"{url!r} is not a link that can be opened: serial ports are not available yet. Use sim://"
-    )
+    return SCHEMES.get(scheme, OTHERS)

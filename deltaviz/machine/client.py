@@ -17,14 +17,14 @@ from concurrent.futures import Future
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Self
-from urllib.parse import urlsplit
 
+from deltaviz.link.links import Link, Links
 from deltaviz.link.urls import check_link
 from deltaviz.machine import intent as i
 from deltaviz.machine.frames import FrameReader, FrameWriter
 from deltaviz.machine.loop_stats import LoopStats
 from deltaviz.machine.mode import Mode
-from deltaviz.machine.snapshot import LinkStatus, Snapshot
+from deltaviz.machine.snapshot import LinkPhase, LinkStatus, Snapshot
 from deltaviz.machine.wire import (
     Answered,
     Failed,
@@ -48,6 +48,7 @@ class MachineClient:
         self._stop_socket, self._talk_socket = stops, talk
         self._setup = setup
         self._robot = robot
+        self._links = Links(setup.link)
         self._lock = threading.Lock()
         self._stops = FrameWriter(stops)
         self._talk_out = FrameWriter(talk)
@@ -56,7 +57,7 @@ class MachineClient:
         self._waiting: dict[int, Future[i.Answer] | Future[LoopStats]] = {}
         self._problem: str | None = None
         self._closing = False
-        self._snapshot = _starting(setup, robot)
+        self._snapshot = _starting(setup.robot, robot, link=self._links.given.id)
         self._first = threading.Event()
         self._wake, self._woken = socket.socketpair()
         self._wake.setblocking(False)
@@ -78,8 +79,7 @@ class MachineClient:
         robots = {name: name for name in preset_names()}
         robot_id = robot if robot in robots else loaded.name
         robots[robot_id] = robot if robot in robots else str(Path(robot).resolve())
-        link_id = urlsplit(link).scheme
-        setup = Setup(robot_id, robots, link_id, {"sim": "sim://", link_id: link})
+        setup = Setup(robot_id, robots, link)
         stops, their_stops = socket.socketpair()
         talk, their_talk = socket.socketpair()
         with their_stops, their_talk:
@@ -95,6 +95,9 @@ class MachineClient:
     @property
     def robot(self) -> Robot:
         return self._robot
+
+    def links(self) -> tuple[Link, ...]:
+        return self._links.list()
 
     def post(self, intent: i.Intent) -> Future[i.Answer]:
         future: Future[i.Answer] = _answered_for_certain()
@@ -223,9 +226,8 @@ class MachineClient:
             waiting = list(self._waiting.values())
             self._waiting.clear()
         self._snapshot = replace(
-            _starting(self._setup, self._robot),
-            robot=self._snapshot.robot,
-            link=LinkStatus(self._snapshot.link.id, connected=False, age=None, problem=problem),
+            _starting(self._snapshot.robot, self._robot, link=self._snapshot.link.id),
+            link=LinkStatus(self._snapshot.link.id, LinkPhase.CLOSED, problem=problem),
             stop_reason=self._snapshot.stop_reason,
             override=self._snapshot.override,
             next_step="Start deltaviz again.",
@@ -273,11 +275,11 @@ def _interrupts_held() -> Generator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _starting(setup: Setup, robot: Robot) -> Snapshot:
+def _starting(robot_id: str, robot: Robot, *, link: str) -> Snapshot:
     """What is known before the process says anything: nothing."""
     return Snapshot(
         at=time.monotonic(),
-        robot=setup.robot,
+        robot=robot_id,
         mode=Mode.OFFLINE,
         homed=False,
         theta=None,
@@ -290,7 +292,7 @@ def _starting(setup: Setup, robot: Robot) -> Snapshot:
         target_xyz=None,
         margins=tuple(0.0 for _ in range(robot.joint_count)),
         held_by=(),
-        link=LinkStatus(setup.link, connected=False, age=None),
+        link=LinkStatus(link, LinkPhase.OPENING),
         holder=None,
         stop_reason=None,
         fault=None,

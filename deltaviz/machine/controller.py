@@ -10,7 +10,9 @@ import math
 from collections.abc import Mapping
 from dataclasses import replace
 
+from deltaviz.link.links import is_link_id
 from deltaviz.link.messages import BoardState
+from deltaviz.link.report import LinkReport
 from deltaviz.link.timing import STALE
 from deltaviz.machine import intent as i
 from deltaviz.machine.activity import Kind
@@ -263,14 +265,12 @@ class Controller(Core):
                 pass  # the mode says it all
 
     def _change_link(self, intent: i.Connect | i.Disconnect | i.SelectRobot, now: float) -> None:
-        """Raises BadValue, with nothing changed, for an unknown link or a robot that is none."""
+        """Raises BadValue, with nothing changed, for a robot that is none or no link's id."""
         action = CloseLink()
         match intent:
             case i.Connect():
-                if intent.link not in self._links:
-                    raise BadValue(
-                        f"There is no link '{intent.link}'; there is: {', '.join(self._links)}."
-                    )
+                if not is_link_id(intent.link):
+                    raise BadValue("A link is chosen by its id, from the list of links.")
                 self._link = intent.link
                 action = OpenLink(intent.link, self.robot)
             case i.SelectRobot():
@@ -283,8 +283,10 @@ class Controller(Core):
         self._drop_motion(now)
         self._part(now)
         self._link_problem = None
+        self._link_report = LinkReport()
         self._stop_reason = None
         self._link_action = action
+        self._opening = isinstance(action, OpenLink)
 
     def _load(self, robot_id: str) -> Robot:
         load = self._robots.get(robot_id)

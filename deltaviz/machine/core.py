@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from deltaviz.link.configuration import configuration_hash, configure_from
 from deltaviz.link.messages import BoardMessage, HostMessage
+from deltaviz.link.report import LinkReport
 from deltaviz.link.session import Session
 from deltaviz.link.timing import STALE
 from deltaviz.machine import sentences
@@ -19,11 +20,12 @@ from deltaviz.machine.board_watch import reported
 from deltaviz.machine.control_lease import ControlLease
 from deltaviz.machine.drive import Drive, FollowerMaker, make_follower
 from deltaviz.machine.horizon import Horizon
+from deltaviz.machine.link_status import link_status, waiting_for_answer
 from deltaviz.machine.mode import Mode
 from deltaviz.machine.picture import Speedometer, finite
 from deltaviz.machine.picture import reported as reported_pose
 from deltaviz.machine.presses import Presses
-from deltaviz.machine.snapshot import LinkStatus, Snapshot
+from deltaviz.machine.snapshot import Snapshot
 from deltaviz.machine.transitions import AT_REST, MOVING, Event, after
 from deltaviz.motion.goal import Rest, ToAngles, ToPoint
 from deltaviz.robots import Robot
@@ -50,10 +52,11 @@ LinkAction = OpenLink | CloseLink
 
 
 class Core:
-    """`robots` loads each robot that may be chosen by its id; `links` names the links.
+    """`robots` loads each robot that may be chosen by its id.
 
-    The caller opens `link` as `link_action` says. Everything that takes `now` takes the same
-    monotonic clock, in seconds.
+    The caller opens `link`, an id, as `link_action` says. `robot_of` names the robot that has a
+    configuration of this hash. Everything that takes `now` takes the same monotonic clock, in
+    seconds.
     """
 
     def __init__(
@@ -61,19 +64,21 @@ class Core:
         robot: Robot,
         *,
         link: str,
-        links: tuple[str, ...],
         robots: Mapping[str, Callable[[], Robot]],
         robot_id: str,
         follower: FollowerMaker = make_follower,
+        robot_of: Callable[[int], str | None] = lambda _: None,
     ) -> None:
         self.mode = Mode.OFFLINE
         self.robot = robot
         self._robot_id = robot_id
         self._robots = robots
-        self._links = links
+        self._robot_of = robot_of
         self._link = link
         self._link_problem: str | None = None
         self._link_action: LinkAction | None = OpenLink(link, robot)
+        self._link_report = LinkReport()
+        self._opening = True
         self._session: Session | None = None
         self._follower = follower
         self._drive: Drive | None = None
@@ -96,23 +101,30 @@ class Core:
         return action
 
     def link_opened(self, now: float) -> None:
+        self._opening = False
         configuration = configure_from(self.robot)
         self._session = Session(
             configuration=configuration,
             digest=configuration_hash(configuration),
             microsteps_per_rad=self.robot.drive.microsteps_per_rad,
             now=now,
+            robot_of=self._robot_of,
         )
         self._speeds = Speedometer(self.robot)
 
     def link_failed(self, problem: str, now: float) -> None:
         """The link could not be opened, or has closed. `problem` says what to do, too."""
+        self._opening = False
         self._lose(problem, now)
 
-    def receive(self, messages: list[BoardMessage], now: float) -> None:
+    def receive(
+        self, messages: list[BoardMessage], now: float, report: LinkReport | None = None
+    ) -> None:
         session = self._session
+        self._link_report = report or self._link_report
         if session is None:
             return
+        session.impression = self._link_report.impression
         for message in messages:
             session.receive(message, now)
         if session.theta is not None and session.board_time is not None:
@@ -297,6 +309,14 @@ class Core:
             held_by = follower.held_by
         telemetry = None if session is None else session.telemetry
         fault = None if telemetry is None else telemetry.fault
+        link = link_status(
+            self._link,
+            session,
+            self._link_report,
+            opening=self._opening,
+            problem=self._link_problem,
+            now=now,
+        )
         return Snapshot(
             at=now,
             robot=self._robot_id,
@@ -312,17 +332,12 @@ class Core:
             target_xyz=target_xyz,
             margins=seen.margins,
             held_by=held_by,
-            link=LinkStatus(
-                id=self._link,
-                connected=session is not None and session.ready,
-                age=None if session is None else session.age(now),
-                problem=self._link_problem,
-            ),
+            link=link,
             holder=self._control.holder,
             stop_reason=self._stop_reason,
             fault=sentences.FAULT[fault] if self.mode is Mode.FAULT and fault else None,
             override=self._override,
-            next_step=sentences.NEXT_STEP.get(self.mode),
+            next_step=waiting_for_answer(link) or sentences.NEXT_STEP.get(self.mode),
             board_time=None if session is None else session.board_time,
             underruns=self._underruns + (0 if session is None else session.underruns),
             counts=telemetry.counts if telemetry is not None and telemetry.counts else None,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from concurrent.futures import Future
 from typing import Protocol
 
+from deltaviz.link.links import Link
 from deltaviz.machine.intent import Answer, Intent
 from deltaviz.machine.snapshot import Snapshot
 from deltaviz.robots import Robot
@@ -21,6 +22,10 @@ class MachinePort(Protocol):
     @property
     def robot(self) -> Robot:
         """The robot that the controller drives now."""
+        ...
+
+    def links(self) -> tuple[Link, ...]:
+        """The links that may be chosen now. Asks the system, which takes some milliseconds."""
         ...
 
     def post(self, intent: Intent) -> Future[Answer]: ...

@@ -20,14 +20,17 @@ from functools import partial
 from multiprocessing.connection import wait
 from typing import Any
 
-from deltaviz.link.transport import LinkError, Transport
+from deltaviz.link.links import Links
+from deltaviz.link.transport import Transport
 from deltaviz.link.urls import open_link
 from deltaviz.machine import intent as i
 from deltaviz.machine.controller import Controller
-from deltaviz.machine.core import CloseLink, OpenLink
 from deltaviz.machine.drive import warm_up
 from deltaviz.machine.frames import FrameReader, FrameWriter
+from deltaviz.machine.known_robots import KnownRobots
+from deltaviz.machine.link_keeper import LinkKeeper
 from deltaviz.machine.loop_stats import Periods
+from deltaviz.machine.opener import ThreadOpener
 from deltaviz.machine.transitions import MOVING
 from deltaviz.machine.wire import (
     BEGINS_MOTION,
@@ -59,16 +62,18 @@ class Process:
         self._stops = FrameReader(stops)
         self._talk_in = reader
         self._talk_out = FrameWriter(talk)
-        self._links = setup.links
+        self._links = Links(setup.link)
         loaders = {key: partial(load, source) for key, source in setup.robots.items()}
         self._controller = Controller(
             loaders[setup.robot](),
             robot_id=setup.robot,
             robots=loaders,
-            link=setup.link,
-            links=tuple(setup.links),
+            link=self._links.given.id,
+            robot_of=KnownRobots(setup.robots).name_of,
         )
-        self._transport: Transport | None = None
+        self._keeper = LinkKeeper(
+            self._controller, open_link=self._open_link, opener=ThreadOpener()
+        )
         self._stopped_after = 0
         self._ends: float | None = None  # when it ends at the latest
         self.told_to_end = False  # by a signal, which may come in the middle of anything
@@ -92,12 +97,11 @@ class Process:
                 if not self._controller.hungry(time.monotonic()):
                     self._wait()
         finally:
-            self._close_link()
+            self._keeper.close()
 
     def tell_failure(self, problem: str) -> None:
         """The last words to the parent, after an error."""
-        if self._transport is not None:
-            self._transport.close()
+        self._keeper.close()
         self._talk_out.send(Failed(problem))
 
     def _over(self) -> bool:
@@ -109,18 +113,16 @@ class Process:
         if self.told_to_end:
             self._end("The machine was told to end.")
         self._read_stops()
-        self._receive(time.monotonic())  # before intents, which may begin a motion on its news
+        self._keeper.receive(time.monotonic())  # first: intents may begin a motion on its news
         self._read_intents()
         now = time.monotonic()
         moving = self._controller.mode in MOVING
         if moving and self._ticked is not None:
             self._periods.add(now - self._ticked)
         self._ticked = now if moving else None
-        messages = self._controller.tick(now)
-        if self._transport is not None:
-            for message in messages:
-                self._transport.send(message)
-        self._follow_link_action()
+        self._keeper.send(self._controller.tick(now))
+        if self._ends is None and self._keeper.follow():
+            self._changed = True
         self._show(now)
 
     def _read_stops(self) -> None:
@@ -160,34 +162,8 @@ class Process:
             return STOPPED_SINCE
         return self._controller.handle(what, time.monotonic())
 
-    def _receive(self, now: float) -> None:
-        transport = self._transport
-        if transport is None:
-            return
-        self._controller.receive(transport.receive(), now)
-        if transport.closed:
-            problem = transport.problem or "The link was closed. Connect again."
-            self._transport = None
-            transport.close()
-            self._controller.link_failed(problem, now)
-
-    def _follow_link_action(self) -> None:
-        action = self._controller.link_action()
-        if isinstance(action, CloseLink | OpenLink):
-            self._close_link()
-        if isinstance(action, OpenLink) and self._ends is None:
-            try:
-                self._transport = open_link(self._links[action.link], action.robot)
-            except LinkError as error:
-                self._controller.link_failed(str(error), time.monotonic())
-            else:
-                self._controller.link_opened(time.monotonic())
-            self._changed = True
-
-    def _close_link(self) -> None:
-        if self._transport is not None:
-            self._transport.close()
-            self._transport = None
+    def _open_link(self, link: str, robot: Robot) -> Transport:
+        return open_link(self._links.url(link), robot)
 
     def _show(self, now: float) -> None:
         """Tell the parent what there is to see; if it is slow, only the newest."""
@@ -207,8 +183,9 @@ class Process:
         sources: list[Any] = [self._stop_socket, self._talk_socket]
         if self._ends is not None:
             sources = []  # at their end these would be readable all the time
-        if self._transport is not None and self._transport.fileno() >= 0:
-            sources.append(self._transport)
+        transport = self._keeper.transport
+        if transport is not None and transport.fileno() >= 0:
+            sources.append(transport)
         timeout = MOVING_WAIT if self._controller.mode in MOVING else IDLE_WAIT
         if self._ends is not None:
             timeout = MOVING_WAIT

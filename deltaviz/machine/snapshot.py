@@ -3,19 +3,37 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import StrEnum
 
 from deltaviz.machine.mode import Mode
 from deltaviz.motion.held import Held
 
 
+class LinkPhase(StrEnum):
+    CLOSED = "closed"
+    OPENING = "opening"
+    GREETING = "greeting"  # it is open, and the board has to answer
+    READY = "ready"
+
+
 @dataclass(frozen=True, slots=True)
 class LinkStatus:
-    """`age` is the time since the last telemetry, in seconds; None before the first."""
+    """Times are in seconds; None where not known yet."""
 
     id: str
-    connected: bool
-    age: float | None
+    phase: LinkPhase
+    age: float | None = None  # since the last telemetry
     problem: str | None = None  # what happened and what to do, for a person
+    board: str | None = None  # its name and the build of its firmware
+    round_trip: float | None = None  # of the newest command
+    dropped: int = 0  # frames that arrived damaged
+    queued: int = 0  # segments that the board has
+    queue_places: int = 0
+    ahead: float = 0.0  # what these and those under way last
+
+    @property
+    def connected(self) -> bool:
+        return self.phase is LinkPhase.READY
 
 
 @dataclass(frozen=True, slots=True)

@@ -31,12 +31,11 @@ STOPPED_SINCE = i.Refused(
 
 @dataclass(frozen=True, slots=True)
 class Setup:
-    """`robots` are names or paths by id; `links` URLs by id."""
+    """`robots` are names or paths by id; `link` is the URL that was given."""
 
     robot: str
     robots: dict[str, str]
     link: str
-    links: dict[str, str]
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+import asyncio
 import math
 import time
 from collections.abc import Awaitable, Callable
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Depends, Request
+from fastapi import APIRouter, Depends, HTTPException, Request
 
-from deltaviz.link.ports import list_links
 from deltaviz.machine import intent
 from deltaviz.machine.port import MachinePort
 from deltaviz.web import models
@@ -81,7 +81,7 @@ def _add_looks(router: APIRouter, machine: MachinePort) -> None:
     @router.get("/ports")
     def ports() -> list[models.Port]:
         """The links that can be chosen, by id."""
-        return [models.Port(id=link.id, description=link.description) for link in list_links()]
+        return [models.Port(id=link.id, description=link.description) for link in machine.links()]
 
 
 def _add_motion(router: APIRouter, machine: MachinePort) -> None:
@@ -134,7 +134,11 @@ def _add_choices(router: APIRouter, machine: MachinePort) -> None:
 
     @router.post("/connect", responses=REFUSALS)
     async def connect(choice: models.LinkChoice, client: Client) -> models.Taken:
-        """Connect to a board by an id from GET /api/ports."""
+        """Connect to a board by an id from GET /api/ports; the state tells how it goes."""
+        ids = [link.id for link in await asyncio.to_thread(machine.links)]
+        if choice.link not in ids:
+            detail = f"There is no link '{choice.link}'; there is: {', '.join(ids)}."
+            raise HTTPException(422, detail)
         return await ask(machine, intent.Connect(client, choice.link))
 
     @router.post("/control", responses=REFUSALS)

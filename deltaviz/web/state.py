@@ -47,13 +47,24 @@ def state_json(snapshot: Snapshot, *, robot: Robot, client: str, now: float) -> 
 
 
 def _link(link: LinkStatus, *, waited: float) -> dict[str, Any]:
-    age = None if link.age is None else (link.age + waited) * 1000
+    age = None if link.age is None else link.age + waited
     return {
         "id": link.id,
         "connected": link.connected,
-        "age_ms": None if age is None else _number(age, digits=1),
+        "phase": str(link.phase),
+        "age_ms": _milliseconds(age),
         "problem": link.problem,
+        "board": link.board,
+        "round_trip_ms": _milliseconds(link.round_trip),
+        "dropped": link.dropped,
+        "queued": link.queued,
+        "queue_places": link.queue_places,
+        "ahead_ms": _milliseconds(link.ahead),
     }
+
+
+def _milliseconds(seconds: float | None) -> float | None:
+    return None if seconds is None else _number(seconds * 1000, digits=1)
 
 
 def _control(holder: str | None, client: str) -> dict[str, Any]:

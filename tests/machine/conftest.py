@@ -61,7 +61,6 @@ class Bench:
         self.controller = Controller(
             robot,
             link="sim",
-            links=("sim",),
             robots=self.robots,
             robot_id="first",
             follower=follower,

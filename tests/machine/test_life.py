@@ -217,8 +217,8 @@ def test_robots_change_at_rest_with_a_new_board(make_bench: Callable[..., Any]) 
 
 
 def test_links_go_by_id(bench: Any) -> None:
-    refused = bench.do(i.Connect(ME, "file:///etc/passwd"))
-    assert refused.kind is i.RefusalKind.VALUE
+    for url in ("file:///etc/passwd", "/dev/ttyUSB0", "sim://", ""):
+        assert bench.do(i.Connect(ME, url)).kind is i.RefusalKind.VALUE
     assert bench.mode is Mode.IDLE
     assert bench.do(i.Disconnect(ME)) == ACCEPTED
     bench.run(0.02)

@@ -22,6 +22,7 @@ import zstandard
 from fastapi import FastAPI
 from websockets.sync.client import ClientConnection, connect
 
+from deltaviz.link.links import Link
 from deltaviz.machine.intent import (
     Accepted,
     Answer,
@@ -33,7 +34,7 @@ from deltaviz.machine.intent import (
     Refused,
 )
 from deltaviz.machine.mode import Mode
-from deltaviz.machine.snapshot import LinkStatus, Snapshot
+from deltaviz.machine.snapshot import LinkPhase, LinkStatus, Snapshot
 from deltaviz.mechanism import RotaryDelta
 from deltaviz.robots import Robot, load_robot
 from deltaviz.robots.coordinates import in_robot
@@ -79,7 +80,7 @@ class FakeMachine:
             target_xyz=xyz,
             margins=(1.0,) * len(theta),
             held_by=(),
-            link=LinkStatus(id="sim", connected=True, age=0.0),
+            link=LinkStatus(id="sim", phase=LinkPhase.READY, age=0.0),
             holder=self.holder,
             stop_reason=None,
             fault=None,
@@ -104,6 +105,9 @@ class FakeMachine:
 
     def of(self, kind: type) -> list[Any]:
         return [intent for intent in self.posted if isinstance(intent, kind)]
+
+    def links(self) -> tuple[Link, ...]:
+        return (Link("sim", "sim://", "Simulated board"), Link("ttyusb0", "/dev/ttyUSB0", "A port"))
 
     def post(self, intent: Intent) -> Future[Answer]:
         self.posted.append(intent)

@@ -19,9 +19,10 @@ from fastapi.testclient import TestClient
 from starlette.requests import HTTPConnection
 from websockets.sync.client import ClientConnection, connect
 
+from deltaviz.link.links import Link
 from deltaviz.machine.intent import Accepted, Answer, Intent
 from deltaviz.machine.mode import Mode
-from deltaviz.machine.snapshot import LinkStatus, Snapshot
+from deltaviz.machine.snapshot import LinkPhase, LinkStatus, Snapshot
 from deltaviz.robots import Robot, load_robot
 from deltaviz.web.app import create_app
 from deltaviz.web.listening import listen
@@ -53,7 +54,7 @@ def snapshot_of(robot: Robot) -> Snapshot:
         target_xyz=None,
         margins=(1.0,) * robot.joint_count,
         held_by=(),
-        link=LinkStatus(id="sim", connected=True, age=0.002),
+        link=LinkStatus(id="sim", phase=LinkPhase.READY, age=0.002),
         holder=None,
         stop_reason=None,
         fault=None,
@@ -76,6 +77,9 @@ class FakeMachine:
         self.snapshot = snapshot_of(self.robot)
         self.told: list[Any] = []
         self.answer: Answer | Exception | None = Accepted()  # None: it never answers
+
+    def links(self) -> tuple[Link, ...]:
+        return (Link("sim", "sim://", "Simulated board"), Link("ttyusb0", "/dev/ttyUSB0", "A port"))
 
     def post(self, intent: Intent) -> Future[Answer]:
         self.told.append(intent)

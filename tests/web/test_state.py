@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from deltaviz.machine.snapshot import LinkStatus
+from deltaviz.machine.snapshot import LinkPhase, LinkStatus
 from deltaviz.motion.held import Held
 from deltaviz.web.state import state_json
 
@@ -57,10 +57,10 @@ def test_the_unknown_is_null(tell: Any) -> None:
 
 
 def test_the_telemetry_s_age_grows_while_nothing_comes(tell: Any) -> None:
-    link = LinkStatus(id="sim", connected=True, age=0.010, problem="Slow.")
+    link = LinkStatus(id="sim", phase=LinkPhase.READY, age=0.010, problem="Slow.")
     told = tell(link=link, waited=0.5)["link"]
     assert told == {"id": "sim", "connected": True, "age_ms": 510.0, "problem": "Slow."}
-    assert tell(link=LinkStatus(id="sim", connected=False, age=None))["link"]["age_ms"] is None
+    assert tell(link=LinkStatus(id="sim", phase=LinkPhase.CLOSED))["link"]["age_ms"] is None
 
 
 @pytest.mark.parametrize(

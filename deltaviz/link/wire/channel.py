@@ -6,7 +6,9 @@ import time
 from collections.abc import Callable
 from random import randint
 
+from deltaviz.link.impression import Listener
 from deltaviz.link.messages import BoardMessage, EStop, HostMessage, Stop
+from deltaviz.link.report import LinkReport
 from deltaviz.link.wire.delivery import Delivery
 from deltaviz.link.wire.stream import ByteStream, Outbox
 
@@ -20,6 +22,7 @@ class Channel:
         self._clock = clock
         self._delivery = Delivery(randint(1, 255))
         self._outbox = Outbox(stream)
+        self._listener = Listener()
 
     @property
     def ended(self) -> str | None:
@@ -27,19 +30,26 @@ class Channel:
         return "it has stopped reading" if self._outbox.overflowed else self._stream.ended
 
     @property
-    def dropped(self) -> int:
-        """Frames that arrived and were no messages from a board."""
-        return self._delivery.dropped
+    def report(self) -> LinkReport:
+        delivery = self._delivery
+        return LinkReport(
+            dropped=delivery.dropped,
+            repeated=delivery.repeated,
+            round_trip=delivery.round_trip,
+            impression=self._listener.impression,
+        )
 
     def send(self, message: HostMessage) -> None:
         if self.ended is None:
             frames = self._delivery.send(message, self._clock())
-            self._outbox.put(frames, first=isinstance(message, Stop | EStop))
+            self._outbox.put(frames, stop=isinstance(message, Stop | EStop))
 
     def receive(self) -> list[BoardMessage]:
         """All that has arrived, in order, also what came before the end."""
         now = self._clock()
-        said, frames = self._delivery.receive(self._stream.read(), now)
+        data = self._stream.read()
+        self._listener.hear(data)
+        said, frames = self._delivery.receive(data, now)
         if self.ended is None:
             self._outbox.put(frames + self._delivery.due(now))
         return said

@@ -125,6 +125,10 @@ def encode(message: Message) -> tuple[int, bytes]:
     return codec.type, codec.encode(message)
 
 
+def type_of(kind: type[Message]) -> int:
+    return _BY_KIND[kind].type
+
+
 def decode_host(type_: int, payload: bytes) -> HostMessage:
     """A message from a host. Raises Malformed, also for one that only a board sends."""
     return _decode("host", type_, payload)

@@ -10,23 +10,28 @@ from collections import deque
 from dataclasses import dataclass
 
 from deltaviz.link.messages import (
+    PROTOCOL_VERSION,
     BoardMessage,
     BoardState,
     Configure,
     Enable,
     EStop,
     Hello,
+    HelloReply,
     Home,
     HostMessage,
     Stop,
+    StopCause,
     Telemetry,
     TelemetryFlags,
 )
 from deltaviz.link.timing import COMMAND_REPEAT
-from deltaviz.link.wire.codec import decode_board, encode
+from deltaviz.link.wire.codec import decode_board, encode, type_of
 from deltaviz.link.wire.commands import COMMANDS, answered_by, name_of, next_sequence
 from deltaviz.link.wire.errors import Malformed
 from deltaviz.link.wire.frames import Frame, FrameReader, write_frame
+
+_HELLO_REPLY = type_of(HelloReply)
 
 
 @dataclass(slots=True)
@@ -34,7 +39,9 @@ class _Outstanding:
     command: HostMessage
     sequence: int
     frame: bytes
+    sent_at: float
     repeat_at: float
+    repetitions: int = 0
     seen_homing: bool = False
 
 
@@ -49,6 +56,8 @@ class Delivery:
         self._outstanding: _Outstanding | None = None
         self._reader = FrameReader()
         self._malformed = 0
+        self.repeated = 0  # commands, in all
+        self.round_trip: float | None = None  # s, of the newest command answered at once
 
     @property
     def dropped(self) -> int:
@@ -74,11 +83,11 @@ class Delivery:
         said: list[BoardMessage] = []
         for frame in self._reader.feed(data):
             try:
-                message = decode_board(frame.type, frame.payload)
+                message = _decode(frame)
             except Malformed:
                 self._malformed += 1
                 continue
-            if self._is_new(message, frame):
+            if self._is_new(message, frame, now):
                 said.append(message)
         return said, self._next(now)
 
@@ -88,6 +97,8 @@ class Delivery:
         if outstanding is None or now < outstanding.repeat_at:
             return []
         outstanding.repeat_at = now + COMMAND_REPEAT
+        outstanding.repetitions += 1
+        self.repeated += 1
         return [outstanding.frame]
 
     def _next(self, now: float) -> list[bytes]:
@@ -97,10 +108,10 @@ class Delivery:
         self._sequence = next_sequence(self._sequence)
         type_, payload = encode(command)
         frame = write_frame(type_, self._sequence, payload)
-        self._outstanding = _Outstanding(command, self._sequence, frame, now + COMMAND_REPEAT)
+        self._outstanding = _Outstanding(command, self._sequence, frame, now, now + COMMAND_REPEAT)
         return [frame]
 
-    def _is_new(self, message: BoardMessage, frame: Frame) -> bool:
+    def _is_new(self, message: BoardMessage, frame: Frame, now: float) -> bool:
         """An answer is taken once, and only by the command that waits for it."""
         name, outstanding = answered_by(message), self._outstanding
         if name is None:
@@ -114,6 +125,8 @@ class Delivery:
         ):
             return False
         self._outstanding = None
+        if not outstanding.repetitions and not isinstance(outstanding.command, Home):
+            self.round_trip = now - outstanding.sent_at  # else: which one was answered?
         return True
 
     # What is given up.
@@ -137,6 +150,19 @@ class Delivery:
             and TelemetryFlags.HOMED not in telemetry.flags
         ):
             self._outstanding = None
+
+
+def _decode(frame: Frame) -> BoardMessage:
+    """In every version of the protocol HelloReply begins with that version: of another one no
+    more than this is understood. Raises Malformed.
+    """
+    version = int.from_bytes(frame.payload[:2], "little")
+    if frame.type != _HELLO_REPLY or len(frame.payload) < 2 or version == PROTOCOL_VERSION:
+        return decode_board(frame.type, frame.payload)
+    return HelloReply(
+        version=version, board="", build="", joints=0, tick_hz=0, queue_places=0, boot=0,
+        last_epoch=0, homed=False, configuration=0, last_stop=StopCause.NONE,
+    )  # fmt: skip
 
 
 def _overrules(message: HostMessage, command: HostMessage) -> bool:

@@ -37,14 +37,22 @@ class Outbox:
     def __init__(self, stream: ByteStream) -> None:
         self._stream = stream
         self._begun = b""
+        self._stops: deque[bytes] = deque()
         self._frames: deque[bytes] = deque()
         self._unsent = 0
         self.overflowed = False
 
-    def put(self, frames: list[bytes], *, first: bool = False) -> None:
-        """`first`: before all that has not begun. All that can be sent is sent."""
-        if first:
-            self._frames.extendleft(reversed(frames))
+    def put(self, frames: list[bytes], *, stop: bool = False) -> None:
+        """All that can be sent is sent.
+
+        A stop takes the place of what has not begun: of that, commands that are still wanted are
+        repeated, and what leads to motion must not follow it. It waits there once.
+        """
+        if stop:
+            self._unsent -= sum(map(len, self._frames))
+            self._frames.clear()
+            frames = [frame for frame in frames if frame not in self._stops]
+            self._stops.extend(frames)
         else:
             self._frames.extend(frames)
         self._unsent += sum(map(len, frames))
@@ -52,10 +60,18 @@ class Outbox:
         self.overflowed = self.overflowed or self._unsent > MOST_UNSENT
 
     def flush(self) -> None:
-        while self._begun or self._frames:
-            frame = self._begun or self._frames.popleft()
-            taken = self._stream.write(frame)
-            self._unsent -= taken
-            self._begun = frame[taken:]
-            if self._begun:
-                return
+        while self._send_one():
+            pass
+
+    def _send_one(self) -> bool:
+        """Whether a frame, or the rest of one, was taken whole."""
+        waiting = self._stops or self._frames
+        frame = self._begun or (waiting[0] if waiting else b"")
+        taken = self._stream.write(frame) if frame else 0
+        if not taken:
+            return False
+        if not self._begun:
+            waiting.popleft()
+        self._begun = frame[taken:]
+        self._unsent -= taken
+        return not self._begun

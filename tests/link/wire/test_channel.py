@@ -70,18 +70,37 @@ def channel(stream, clock):
     return Channel(stream, clock)
 
 
-def test_a_stop_goes_before_all_that_waits_but_never_into_a_frame(stream, channel):
+def test_a_stop_takes_the_place_of_all_that_waits_but_never_breaks_into_a_frame(stream, channel):
     stream.room = 3
     for seen in range(4):
         channel.send(Keep(seen))
     channel.send(Stop())
     channel.send(EStop())
+    channel.send(Keep(9))
     stream.room = 1000
     channel.receive()
     said = [message for message, _ in stream.messages()]
-    assert said[0] == Keep(0)  # was begun
-    assert set(said[1:3]) == {Stop(), EStop()}
-    assert said[3:] == [Keep(1), Keep(2), Keep(3)]
+    assert said == [Keep(0), Stop(), EStop(), Keep(9)], "the first was begun"
+
+
+def test_repeated_stops_wait_once(stream, channel):
+    for _ in range(50):
+        channel.send(Stop())
+        channel.send(EStop())
+    stream.room = 1000
+    channel.receive()
+    assert [message for message, _ in stream.messages()] == [Stop(), EStop()]
+
+
+def test_a_command_that_a_stop_swept_away_is_repeated_if_it_is_still_wanted(stream, channel, clock):
+    channel.send(Hello(1))
+    channel.send(Stop())
+    stream.room = 1000
+    channel.receive()
+    assert [message for message, _ in stream.messages()] == [Stop()]
+    clock.now += 0.051
+    channel.receive()
+    assert [message for message, _ in stream.messages()] == [Stop(), Hello(1)]
 
 
 def test_receiving_repeats_what_is_due(stream, channel, clock):
