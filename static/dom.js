@@ -67,3 +67,12 @@ export function markPressed(buttons, chosen) {
     if (button.getAttribute("aria-pressed") !== pressed) button.setAttribute("aria-pressed", pressed);
   }
 }
+
+/**
+ * After a choice by pointer the arrow keys are for jogging again; who chose by keyboard stays.
+ *
+ * @param {HTMLSelectElement} select
+ */
+export function leave(select) {
+  if (!select.matches(":focus-visible")) select.blur();
+}

@@ -56,7 +56,7 @@ export function chooseMessage({ state, connected, stale, notice }) {
   if (state.control.holder === "another") {
     return tell("warn", "Another has control. You watch, and may stop at any time.");
   }
-  const next = state.next_step ?? NEXT[state.mode];
+  const next = [state.link.note, state.next_step ?? NEXT[state.mode]].filter(Boolean).join(" ");
   if (state.stop_reason !== null && state.mode !== "jogging" && state.mode !== "moving") {
     return tell("quiet", `Stopped: ${withPeriod(state.stop_reason)} ${next}`, step);
   }

@@ -89,14 +89,14 @@ export class Status {
    * @param {RobotState["link"]} link
    * @param {boolean} stale
    */
-  #drawLink({ id, connected, age_ms }, stale) {
+  #drawLink({ id, connected, phase, age_ms }, stale) {
     const old = stale || !connected || age_ms === null || age_ms > OLD_MS;
     const tone = old ? "warn" : "quiet";
     const now = performance.now();
     if (tone === this.#link.dataset["tone"] && now - this.#ageShown < AGE_SHOWN_MS) return;
     this.#ageShown = now;
     this.#link.dataset["tone"] = tone;
-    const age = !connected ? "off" : stale ? "stale" : age_ms === null ? "–" : `${Math.round(age_ms)} ms`;
+    const age = phase === "closed" ? "off" : !connected ? "…" : stale ? "stale" : age_ms === null ? "–" : `${Math.round(age_ms)} ms`;
     setText(/** @type {Element} */ (this.#link.lastElementChild), `${id} ${age}`);
     this.#link.title = "Link, and the age of its last news";
   }

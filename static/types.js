@@ -4,6 +4,23 @@
  * @typedef {"offline" | "disabled" | "unhomed" | "homing" | "idle" | "jogging" | "moving"
  *   | "running" | "paused" | "stopping" | "fault" | "estop"} Mode
  *
+ * `problem` says what happened to the link and what to do, `note` what became of a board that was
+ * met again.
+ * @typedef {{
+ *   id: string,
+ *   connected: boolean,
+ *   phase: "closed" | "opening" | "greeting" | "ready",
+ *   age_ms: number | null,
+ *   problem: string | null,
+ *   note: string | null,
+ *   board: string | null,
+ *   round_trip_ms: number | null,
+ *   dropped: number,
+ *   queued: number,
+ *   queue_places: number,
+ *   ahead_ms: number | null,
+ * }} Link
+ *
  * @typedef {{limit: string, arm: number | null, way_out: string[]}} Held
  *
  * @typedef {{
@@ -20,7 +37,7 @@
  *   theta_speed_share: number[] | null,
  *   margins: number[],
  *   held_by: Held[],
- *   link: {id: string, connected: boolean, age_ms: number | null, problem: string | null},
+ *   link: Link,
  *   control: {holder: "you" | "another" | null, you: boolean},
  *   stop_reason: string | null,
  *   fault: string | null,

@@ -119,7 +119,7 @@ def test_bad_usage_is_status_2_with_a_way_out(
     ("link", "says"),
     [
         ("emulate://", "emulate://"),
-        ("serial:///dev/ttyUSB0", "serial:///dev/ttyUSB0"),
+        ("serial:///dev/ttyUSB0?speed=9600", "speed"),
         ("sim://?home=0", "home"),
         ("nonsense", "sim://"),
     ],

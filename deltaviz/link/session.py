@@ -16,18 +16,17 @@ from deltaviz.link.flight import Flight
 from deltaviz.link.impression import Impression
 from deltaviz.link.objections import objection
 from deltaviz.link.rules import since
-from deltaviz.link.session_states import MOTIONS, PHASES, Motion, News, Phase, Turn
+from deltaviz.link.session_states import PHASES, Motion, News, Phase
 from deltaviz.link.timing import (
     ANSWER_WITHIN,
     GREETING_WITHIN,
     HELLO_REPEAT,
     KEEP_PERIOD,
-    NEVER_ARMED,
     SILENT_AFTER,
     STALE,
-    STOP_REPEAT,
     STRANGE_AFTER,
 )
+from deltaviz.link.under_way import UnderWay
 from deltaviz.motion.knot import CartesianKnot, Knot
 
 
@@ -47,14 +46,11 @@ class Session:
         robot_of: Callable[[int], str | None] = lambda _: None,
     ) -> None:
         self.phase = Phase.GREETING
-        self.motion = Motion.NONE
         self.problem: str | None = None  # why it failed, and what to do
         self.board: m.HelloReply | None = None
         self.impression = Impression()  # of what is connected; the caller keeps it new
         self.telemetry: m.Telemetry | None = None
-        self.stopped: m.Stopped | None = None  # the newest
         self.refused: m.Refused | None = None  # what halted the motion under way
-        self.underruns = 0
         self._configuration = configuration
         self._digest = digest
         self._scale = tuple(microsteps_per_rad)
@@ -62,17 +58,12 @@ class Session:
         self._opened = now
         self._heard = now
         self._epoch = 0
-        self._flight: Flight | None = None
+        self._under_way = UnderWay()
         self._ticks = 0  # board time since the first telemetry, unwrapped
         self._pending: dict[str, float] = {}  # what has to be answered: when to give up
         self._settled = True  # telemetry has come since the last answer
         self._hello_next = now + HELLO_REPEAT
         self._report_due = float("inf")
-        self._underrun_epoch: int | None = None
-        self._repeat_at = now  # of the stop under way
-        self._stopping_epoch: int | None = None
-        self._stop_tick = 0
-        self._seen_homing = False
         self._kept = float("-inf")
         self._out: list[m.HostMessage] = [m.Hello(m.PROTOCOL_VERSION)]
 
@@ -107,7 +98,16 @@ class Session:
     @property
     def flight(self) -> Flight | None:
         """The open epoch."""
-        return self._flight
+        return self._under_way.flight
+
+    @property
+    def stopped(self) -> m.Stopped | None:
+        """The newest one of this motion."""
+        return self._under_way.stopped
+
+    @property
+    def underruns(self) -> int:
+        return self._under_way.underruns
 
     @property
     def board_time(self) -> float | None:
@@ -121,12 +121,12 @@ class Session:
     @property
     def stopping(self) -> bool:
         """A stop was sent and the board has not answered that it rests."""
-        return self.motion is Motion.STOPPING
+        return self._under_way.state is Motion.STOPPING
 
     @property
     def estopping(self) -> bool:
         """An e-stop was sent and the board has not reported it."""
-        return self.motion is Motion.ESTOPPING
+        return self._under_way.state is Motion.ESTOPPING
 
     @property
     def settled(self) -> bool:
@@ -136,27 +136,27 @@ class Session:
     @property
     def homing(self) -> bool:
         """Homing was asked for and has neither ended nor failed."""
-        return self.motion is Motion.HOMING
+        return self._under_way.state is Motion.HOMING
 
     @property
     def standing(self) -> bool:
         """At rest, with everything run that was sent."""
         if self.telemetry is None or self.moving or self.stopping:
             return False
-        return self._flight is None or self._flight.all_taken(self.telemetry)
+        return self.flight is None or self.flight.all_taken(self.telemetry)
 
     def ahead(self, now: float) -> float:
         """Seconds of motion that the board still has."""
-        if self._flight is None or self.telemetry is None:
+        if self.flight is None or self.telemetry is None:
             return 0.0
-        return self._flight.ahead(self.telemetry, elapsed=max(0.0, now - self._heard))
+        return self.flight.ahead(self.telemetry, elapsed=max(0.0, now - self._heard))
 
     def wants_knot(self, now: float, *, horizon: float) -> bool:
         """One more knot is due: less than `horizon` (s) is queued, a place is free, news is new.
 
         No more than that is ever under way, so that a stop has little to wait behind.
         """
-        flight = self._flight
+        flight = self.flight
         if flight is None or self.telemetry is None or now - self._heard >= STALE:
             return False
         if flight.free(self.telemetry) <= 0 or flight.unacknowledged >= horizon:
@@ -170,23 +170,23 @@ class Session:
         telemetry = self.telemetry
         if self.board is None or telemetry is None or telemetry.state is not m.BoardState.HALTED:
             raise RuntimeError("an epoch is opened only while the board is halted")
-        self._ask(Turn.BEGIN)
-        self._epoch = (self._epoch + 1) & 0xFFFF
-        self._flight = Flight(
-            epoch=self._epoch,
+        epoch = (self._epoch + 1) & 0xFFFF
+        flight = Flight(
+            epoch=epoch,
             telemetry=telemetry,
             tick_hz=self.board.tick_hz,
             microsteps_per_rad=self._scale,
         )
-        self.stopped = None
+        self._under_way.begin(flight)
+        self._epoch = epoch
         self.refused = None
-        self._out.append(self._flight.arm())
+        self._out.append(flight.arm())
 
     def segment(self, knot: Knot | CartesianKnot, now: float) -> None:
         """Send one knot of the open epoch."""
-        if self._flight is None or self.telemetry is None:
+        if self.flight is None or self.telemetry is None:
             raise RuntimeError("no epoch is open")
-        self._out.append(self._flight.segment(knot, self.telemetry))
+        self._out.append(self.flight.segment(knot, self.telemetry))
         self._kept = now
 
     def keep(self, now: float) -> None:
@@ -198,37 +198,28 @@ class Session:
 
     def stop(self, now: float) -> None:
         """Brake and halt; repeated until the board says that it rests. In every state."""
-        if not self.stopping:
-            self._stopping_epoch = None if self._flight is None else self._flight.epoch
-            self._stop_tick = 0 if self.telemetry is None else self.telemetry.now
-        self._ask(Turn.STOP)
-        self.stopped = None
+        self._under_way.stop(now, self.telemetry)
         for overruled in ("enable", "reset"):  # they may never be answered
             self._pending.pop(overruled, None)
         self._out.append(m.Stop())
-        if self.stopping:
-            self._repeat_at = now + STOP_REPEAT
 
     def estop(self, now: float) -> None:
         """Drivers off; repeated until the board says that they are. In every state."""
-        self._ask(Turn.ESTOP)
+        self._under_way.estop(now)
         self._pending.clear()
         self._out.append(m.EStop())
-        self._repeat_at = now + STOP_REPEAT
 
     def enable(self, now: float, *, on: bool) -> None:
         if not on:
-            self._ask(Turn.DISABLE)
+            self._under_way.disable()
         self._command(m.Enable(on), now + ANSWER_WITHIN)
 
     def home(self, now: float) -> None:
         """Begin homing, which needs a live lease as any motion does. Not while stopping."""
-        self._ask(Turn.HOME)
+        self._under_way.home()
         if self.telemetry is not None:
             self._out.append(m.Keep(self.telemetry.now))
             self._kept = now
-        self._seen_homing = False
-        self.stopped = None
         self._out.append(m.Home())
 
     def reset(self, now: float) -> None:
@@ -239,9 +230,7 @@ class Session:
         if self.phase is Phase.GREETING and now >= self._hello_next:
             self._out.append(m.Hello(m.PROTOCOL_VERSION))
             self._hello_next = now + HELLO_REPEAT
-        if self.motion in _REPEATED and now >= self._repeat_at:
-            self._out.append(_REPEATED[self.motion])
-            self._repeat_at = now + STOP_REPEAT
+        self._out += self._under_way.due(now)
         overdue = [command for command, due in self._pending.items() if now >= due]
         if overdue:
             self._fail(News.UNANSWERED, problems.unanswered(overdue[0]))
@@ -278,7 +267,7 @@ class Session:
             case m.Telemetry():
                 self._reported(message, now)
             case m.Stopped():
-                self._has_stopped(message)
+                self._under_way.has_stopped(message)
             case m.Done():
                 self._done(message.command)
             case m.Refused():
@@ -309,7 +298,7 @@ class Session:
 
     def _done(self, command: str) -> None:
         self._answered(command)
-        if command == "home" and self._happens(Turn.HOMED):
+        if command == "home" and self._under_way.is_homed():
             self._settled = False
 
     def _reported(self, telemetry: m.Telemetry, now: float) -> None:
@@ -318,62 +307,20 @@ class Session:
         self.telemetry = telemetry
         self._heard = now
         self._settled = True
-        if self._flight is not None:
-            self._flight.acknowledge(telemetry)
         if m.TelemetryFlags.CONFIGURED not in telemetry.flags:
             self._fail(News.RESTARTED, problems.restarted())
         else:
             self._learn(News.REPORTED)
-        self._watch_motion(telemetry)
-
-    def _watch_motion(self, telemetry: m.Telemetry) -> None:
-        """What the board's state says of the motion under way."""
-        if self.stopping and self._was_never_armed(telemetry):
-            self._stopping_epoch = None
-        if telemetry.state is m.BoardState.ESTOP:
-            self._happens(Turn.ESTOPPED)
-        elif telemetry.state is m.BoardState.FAULT:
-            self._happens(Turn.FAULTED)
-        elif telemetry.state is m.BoardState.HOMING:
-            self._seen_homing = True
-        elif self._seen_homing and telemetry.state is not m.BoardState.BRAKING:
-            self._happens(Turn.ENDED)
-
-    def _was_never_armed(self, telemetry: m.Telemetry) -> bool:
-        """The stop overruled an Arm that was lost on its way: no answer will bear its epoch."""
-        waited = since(telemetry.now, self._stop_tick)
-        return (
-            self.board is not None
-            and telemetry.epoch != self._stopping_epoch
-            and waited >= NEVER_ARMED * self.board.tick_hz
-        )
-
-    def _has_stopped(self, stopped: m.Stopped) -> None:
-        """Late answers to a stop before the present epoch say nothing about this one."""
-        if self.stopping:
-            if self._stopping_epoch not in (None, stopped.epoch):
-                return
-        elif self._flight is not None and stopped.epoch != self._flight.epoch:
-            return
-        self._happens(Turn.STOPPED)
-        self.stopped = stopped
-        if stopped.cause is m.StopCause.UNDERRUN and stopped.epoch != self._underrun_epoch:
-            self._underrun_epoch = stopped.epoch  # the answer to our own stop tells it again
-            self.underruns += 1
+        if self.board is not None:
+            self._under_way.reported(telemetry, tick_hz=self.board.tick_hz)
 
     def _was_refused(self, refused: m.Refused) -> None:
         self._answered(refused.command)
         if refused.command == "configure":
             self._configuration_refused(refused)
-        elif refused.of_segment:
-            if self._flight is not None:
-                self.refused = refused
-        else:
+        elif not refused.of_segment or self.flight is not None:
             self.refused = refused
-            if refused.command == "arm":  # no epoch was opened, so none will be stopped
-                self._stopping_epoch = None
-            if refused.command in ("arm", "home"):
-                self._happens(Turn.REFUSED)
+            self._under_way.was_refused(refused.command)
 
     def _configuration_refused(self, refused: m.Refused) -> None:
         if self.board is None:
@@ -388,8 +335,6 @@ class Session:
         self._pending[type(message).__name__.lower()] = due
         self._out.append(message)
 
-    # From state to state.
-
     def _learn(self, news: News) -> bool:
         """Whether `news` leads anywhere in this phase; if so, it has."""
         target = PHASES.get((self.phase, news))
@@ -400,23 +345,3 @@ class Session:
         if self._learn(news):
             self._pending.clear()
             self.problem = problem
-
-    def _happens(self, turn: Turn) -> bool:
-        """Whether `turn` means anything to the motion under way; if so, it has happened."""
-        target = MOTIONS.get((self.motion, turn))
-        if target is None:
-            return False
-        self.motion = target
-        if target is not Motion.EPOCH:
-            self._flight = None
-        return True
-
-    def _ask(self, turn: Turn) -> None:
-        if not self._happens(turn):
-            raise RuntimeError(f"{turn} is not possible while {self.motion}")
-
-
-_REPEATED: dict[Motion, m.HostMessage] = {
-    Motion.STOPPING: m.Stop(),
-    Motion.ESTOPPING: m.EStop(),
-}

@@ -114,7 +114,7 @@ class Controller(Core):
         self._control.take(intent.client)
         self._activity = activity
         self._aims = activity.kind is not Kind.JOG
-        self._stop_reason = None
+        self._stop_reason = self._note = None
         self._enter(event)
         return ACCEPTED
 
@@ -256,7 +256,7 @@ class Controller(Core):
                 session.enable(now, on=False)
             case i.Home():
                 self._drop_motion(now)
-                self._stop_reason = None
+                self._stop_reason = self._note = None
                 session.home(now)
             case i.Reset():
                 self._stop_reason = None
@@ -284,7 +284,7 @@ class Controller(Core):
         self._part(now)
         self._link_problem = None
         self._link_report = LinkReport()
-        self._stop_reason = None
+        self._stop_reason = self._note = None
         self._link_action = action
         self._opening = isinstance(action, OpenLink)
 

@@ -15,6 +15,7 @@ from deltaviz.link.report import LinkReport
 from deltaviz.link.session import Session
 from deltaviz.link.timing import STALE
 from deltaviz.machine import sentences
+from deltaviz.machine.acquaintance import Acquaintance
 from deltaviz.machine.activity import Activity, Kind
 from deltaviz.machine.board_watch import reported
 from deltaviz.machine.control_lease import ControlLease
@@ -79,6 +80,9 @@ class Core:
         self._link_action: LinkAction | None = OpenLink(link, robot)
         self._link_report = LinkReport()
         self._opening = True
+        self._acquaintance = Acquaintance()
+        self._greeted = False  # the board of this session
+        self._note: str | None = None
         self._session: Session | None = None
         self._follower = follower
         self._drive: Drive | None = None
@@ -102,6 +106,7 @@ class Core:
 
     def link_opened(self, now: float) -> None:
         self._opening = False
+        self._greeted = False
         configuration = configure_from(self.robot)
         self._session = Session(
             configuration=configuration,
@@ -198,12 +203,20 @@ class Core:
             return
         if session.refused is not None:
             self._board_refused(session, now)
+        if session.ready:
+            self._meet(session)
         if session.ready and session.settled:
             event = reported(session)
             if event is not None:
                 self._board_says(event, session, now)
         if self.mode in MOVING and self._drive and (session.age(now) or 0.0) >= STALE:
             self.stop("The board was silent for 150 ms.", now)
+
+    def _meet(self, session: Session) -> None:
+        if not self._greeted:
+            self._greeted = True
+            self._note = self._acquaintance.greet(self._link, session)
+        self._acquaintance.note(self._link, session)
 
     def _board_refused(self, session: Session, now: float) -> None:
         refused, session.refused = session.refused, None
@@ -315,6 +328,7 @@ class Core:
             self._link_report,
             opening=self._opening,
             problem=self._link_problem,
+            note=self._note,
             now=now,
         )
         return Snapshot(

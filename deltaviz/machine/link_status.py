@@ -14,6 +14,7 @@ def link_status(
     *,
     opening: bool,
     problem: str | None,
+    note: str | None,
     now: float,
 ) -> LinkStatus:
     if session is None:
@@ -26,6 +27,7 @@ def link_status(
         phase=LinkPhase.READY if session.ready else LinkPhase.GREETING,
         age=session.age(now),
         problem=problem,
+        note=note,
         board=None if board is None else f"{board.board} {board.build}".strip(),
         round_trip=report.round_trip,
         dropped=report.dropped,

@@ -24,6 +24,7 @@ class LinkStatus:
     phase: LinkPhase
     age: float | None = None  # since the last telemetry
     problem: str | None = None  # what happened and what to do, for a person
+    note: str | None = None  # what became of a board that was met again
     board: str | None = None  # its name and the build of its firmware
     round_trip: float | None = None  # of the newest command
     dropped: int = 0  # frames that arrived damaged

@@ -54,6 +54,7 @@ def _link(link: LinkStatus, *, waited: float) -> dict[str, Any]:
         "phase": str(link.phase),
         "age_ms": _milliseconds(age),
         "problem": link.problem,
+        "note": link.note,
         "board": link.board,
         "round_trip_ms": _milliseconds(link.round_trip),
         "dropped": link.dropped,

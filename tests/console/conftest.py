@@ -70,7 +70,20 @@ READY: dict[str, Any] = {
     "theta_speed_share": [0.0, 0.0, 0.0],
     "margins": [0.9, 0.9, 0.9],
     "held_by": [],
-    "link": {"id": "sim", "connected": True, "age_ms": 4.0, "problem": None},
+    "link": {
+        "id": "sim",
+        "connected": True,
+        "phase": "ready",
+        "age_ms": 4.0,
+        "problem": None,
+        "note": None,
+        "board": "simulated python",
+        "round_trip_ms": 0.8,
+        "dropped": 0,
+        "queued": 6,
+        "queue_places": 64,
+        "ahead_ms": 58.0,
+    },
     "control": {"holder": "you", "you": True},
     "stop_reason": None,
     "fault": None,
@@ -79,7 +92,7 @@ READY: dict[str, Any] = {
     "board_time_s": 1.0,
     "underruns": 0,
 }
-PORTS = {"ports": [{"id": "sim", "description": "Simulated board"}]}
+PORTS = [{"id": "sim", "description": "Simulated board"}]
 ROBOT: dict[str, Any] = {
     "name": "stm32",
     "joints": 3,
@@ -153,6 +166,7 @@ class Machine:
         with self.lock:
             self.state = json.loads(json.dumps(READY))
             self.robot = json.loads(json.dumps(ROBOT))
+            self.ports = list(PORTS)
             self.heard: list[dict[str, Any]] = []
             self.posts: list[tuple[str, Any]] = []
             self.refusals: dict[str, tuple[int, str]] = {}
@@ -175,6 +189,16 @@ class Machine:
     def set(self, **fields: Any) -> None:
         with self.lock:
             self.state.update(fields)
+
+    def set_link(self, **fields: Any) -> None:
+        """Unless it is ready nothing is known of a board."""
+        with self.lock:
+            link = self.state["link"]
+            link.update(fields)
+            if link["phase"] != "ready":
+                link.update(connected=False, age_ms=None, board=None, round_trip_ms=None)
+                link.update(queued=0, queue_places=0)
+                self.state.update(mode="offline", homed=False)
 
     def messages(self, *types: str) -> list[dict[str, Any]]:
         with self.lock:
@@ -236,7 +260,7 @@ class Machine:
     async def _api(self, request: Request) -> Response:
         path = request.path_params["path"]
         if request.method == "GET":
-            return JSONResponse({"robot": self.robot, "ports": PORTS}[path])
+            return JSONResponse({"robot": self.robot, "ports": self.ports}[path])
         body = await request.body()
         with self.lock:
             self.posts.append((path, json.loads(body) if body else None))

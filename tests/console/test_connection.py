@@ -125,8 +125,7 @@ def test_robot_and_link_are_chosen(
     page.get_by_role("button", name="Set-up").click()
     page.get_by_role("button", name="Disconnect").click()
     wait_until(lambda: [path for path, _ in machine.posts] == ["robot", "disconnect"])
-    link = {"id": "sim", "connected": False, "age_ms": None, "problem": None}
-    machine.set(mode="offline", homed=False, link=link)
+    machine.set_link(phase="closed")
     page.get_by_role("button", name="Connect", exact=True).click()
     wait_until(lambda: machine.posted("connect") == [{"link": "sim"}])
 

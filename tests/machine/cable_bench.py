@@ -19,6 +19,8 @@ from deltaviz.robots import Robot
 from tests.link.cable import Cable, Counted, wait_for_bytes
 from tests.machine.conftest import Bench
 
+LINK = "ttyusb0"
+
 
 class CableBench(Bench):
     """`unplug` pulls the plug; `plug_in` gives the same board, or a new one, a new cable."""
@@ -30,7 +32,7 @@ class CableBench(Bench):
         self._host: Counted | None = None
         self._told = 0  # bytes, since the host opened the port
         self._heard = 0
-        super().__init__(robot, homed=homed)
+        super().__init__(robot, homed=homed, link=LINK)
 
     @property
     def transport(self) -> Transport | None:

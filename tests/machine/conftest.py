@@ -44,6 +44,7 @@ class Bench:
         robot: Robot,
         *,
         homed: bool = True,
+        link: str = "sim",
         follower: FollowerMaker = steady_follower,
         robots: dict[str, Callable[[], Robot]] | None = None,
     ) -> None:
@@ -60,7 +61,7 @@ class Bench:
         self.robots = {"first": lambda: robot} | (robots or {})
         self.controller = Controller(
             robot,
-            link="sim",
+            link=link,
             robots=self.robots,
             robot_id="first",
             follower=follower,

@@ -15,7 +15,7 @@ from deltaviz.machine.mode import Mode
 from deltaviz.machine.snapshot import LinkPhase
 from deltaviz.machine.transitions import AT_REST
 from deltaviz.robots import Robot
-from tests.machine.cable_bench import CableBench
+from tests.machine.cable_bench import LINK, CableBench
 from tests.machine.test_broken import (
     ACCEPTED,
     ME,
@@ -26,8 +26,6 @@ from tests.machine.test_broken import (
     sliding,
     stepping,
 )
-
-LINK = "ttyusb0"
 
 
 @pytest.fixture
@@ -118,6 +116,11 @@ def test_in_the_middle_of_everything(
     bench.run_until(lambda: bench.snapshot.link.connected)
     bench.run(0.02)
     assert bench.snapshot.homed is (knew and same_board)
+    note = bench.snapshot.link.note
+    if bench.snapshot.homed:
+        assert "kept its position" in str(note)
+    elif knew:
+        assert "home it" in str(note)
     assert_nothing_resumes(bench)
 
 

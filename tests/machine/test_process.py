@@ -199,7 +199,7 @@ def test_a_bad_robot_or_link_is_told_before_anything_starts() -> None:
     with pytest.raises(RobotFileError, match="stm32"):
         MachineClient.start(robot="stm33")
     with pytest.raises(LinkError):
-        MachineClient.start(link="serial:///dev/ttyUSB0")
+        MachineClient.start(link="serial:///dev/ttyUSB0?speed=9600")
 
 
 def test_the_loop_tells_how_regular_it_is(shared: MachineClient) -> None:

@@ -248,7 +248,16 @@ def test_the_robot_is_described_for_people_and_programs(client: TestClient, robo
     assert "stm32" in told["presets"]
 
 
-def test_the_links_are_listed_by_id(client: TestClient) -> None:
-    links = client.get("/api/ports").json()
-    assert links[0]["id"] == "sim"
-    assert all(link["description"] for link in links)
+def test_the_links_are_listed_by_id_and_without_their_urls(client: TestClient) -> None:
+    assert client.get("/api/ports").json() == [
+        {"id": "sim", "description": "Simulated board"},
+        {"id": "ttyusb0", "description": "A port"},
+    ]
+
+
+@pytest.mark.parametrize("link", ["ttyusb1", "emulate"])
+def test_a_link_that_is_not_there_is_refused(client: TestClient, machine: Any, link: str) -> None:
+    answer = client.post("/api/connect", json={"link": link})
+    assert answer.status_code == 422
+    assert answer.json()["detail"] == f"There is no link '{link}'; there is: sim, ttyusb0."
+    assert machine.told == []
