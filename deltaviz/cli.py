@@ -11,6 +11,7 @@ import os
 import sys
 from collections.abc import Callable, Sequence
 from importlib.metadata import version
+from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
 if TYPE_CHECKING:  # the command line starts before the layers it needs are known
@@ -93,12 +94,21 @@ def _add_json(parser: argparse.ArgumentParser) -> None:
 
 def _add_serve(parser: argparse.ArgumentParser) -> None:
     _add_robot(parser)
-    parser.add_argument("--link", default="sim://", metavar="URL", help="the board (sim://)")
+    parser.add_argument(
+        "--link",
+        default="sim://",
+        metavar="URL",
+        help="the board: a serial port (/dev/ttyUSB0, serial:///dev/ttyUSB0?baud=115200), "
+        "socket://HOST:PORT or another URL of pyserial's, or simulated (sim://)",
+    )
     parser.add_argument("--host", default="127.0.0.1", help="address to listen on (127.0.0.1)")
     parser.add_argument(
         "--port", type=_port, default=8000, help="port to listen on; 0: any free one (8000)"
     )
     parser.add_argument("--no-browser", action="store_true", help="do not open the browser")
+    parser.add_argument(
+        "--capture", type=Path, metavar="FILE", help="add all that passes on the link to this file"
+    )
     parser.set_defaults(run=_serve)
 
 
@@ -118,6 +128,7 @@ def _serve(options: argparse.Namespace) -> int:
         host=options.host,
         port=options.port,
         browser=not options.no_browser,
+        capture=options.capture,
     )
 
 
@@ -225,21 +236,87 @@ def _robots(options: argparse.Namespace) -> int:
 
 
 def _add_ports(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--list", action="store_true", help="only list them: open none, ask for no board"
+    )
+    parser.add_argument(
+        "--baud", type=_baud, metavar="N", help="baud rate at which to ask (921600)"
+    )
     _add_json(parser)
     parser.set_defaults(run=_ports)
 
 
+def _baud(text: str) -> int:
+    if not text.strip().isdecimal() or int(text) == 0:
+        raise argparse.ArgumentTypeError(f"{text!r} is no baud rate; use a number like 115200")
+    return int(text)
+
+
 def _ports(options: argparse.Namespace) -> int:
     from deltaviz.link.ports import list_ports
+    from deltaviz.link.probe import probe_all
+    from deltaviz.link.serial_link import BAUD
+    from deltaviz.terminal import ports as terminal
 
     ports = list_ports()
-    if options.json:
-        print(json.dumps({"ports": [{"device": p.device, "what": p.description} for p in ports]}))
-    elif not ports:
-        print("No serial port found. Plug the board in, or use the simulated one: --link sim://")
-    for port in () if options.json else ports:
-        print(f"{port.device:<20} {port.description}")
+    devices = [] if options.list else [port.device for port in ports]
+    findings = probe_all(devices, baud=options.baud or BAUD)
+    print((terminal.as_json if options.json else terminal.text)(ports, findings))
     return OK
+
+
+def _add_monitor(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("url", nargs="?", metavar="URL", help="a port to listen on")
+    parser.add_argument("--capture", type=Path, metavar="FILE", help="what serve --capture wrote")
+    parser.add_argument("--follow", action="store_true", help="go on while the capture grows")
+    parser.add_argument("--only", type=_names, default=(), metavar="NAMES", help="Arm,Segment,...")
+    parser.add_argument("--hide", type=_names, default=(), metavar="NAMES", help="Telemetry,Keep")
+    parser.add_argument("--from", dest="sender", choices=("host", "board"), help="one side's words")
+    parser.add_argument(
+        "--replay",
+        choices=("session", "board"),
+        help="run a capture again: the host's session with the board's words, or the simulated "
+        "board with the host's; status 1 if it does not come out the same",
+    )
+    parser.add_argument("--json", action="store_true", help="one JSON object a line")
+    parser.set_defaults(run=_monitor)
+
+
+def _names(text: str) -> tuple[str, ...]:
+    from deltaviz.terminal.monitor import NAMES
+
+    names = tuple(name.strip() for name in text.split(","))
+    for name in names:
+        if name not in NAMES:
+            known = ", ".join(NAMES)
+            raise argparse.ArgumentTypeError(f"there is no message {name!r}; there is: {known}")
+    return names
+
+
+def _monitor(options: argparse.Namespace) -> int:
+    from deltaviz.link.capture.reader import CaptureError
+    from deltaviz.link.capture.spoken import ReplayError
+    from deltaviz.link.transport import LinkError
+    from deltaviz.terminal import monitor
+
+    if (options.url is None) == (options.capture is None):
+        raise UsageError("monitor takes either a port's URL or --capture FILE")
+    if options.capture is None and (options.follow or options.replay):
+        raise UsageError("--follow and --replay go with --capture FILE")
+    try:
+        if options.capture is not None and options.replay is not None:
+            return monitor.replay(options.capture, options.replay, as_json=options.json)
+        filter_ = monitor.Filter(options.only, options.hide, options.sender)
+        return monitor.run(
+            url=options.url,
+            capture=options.capture,
+            follow=options.follow,
+            filter_=filter_,
+            as_json=options.json,
+        )
+    except (CaptureError, LinkError, ReplayError) as error:
+        print(f"deltaviz: {error}", file=sys.stderr)
+        return FAILED
 
 
 def _load(name: str) -> Robot:
@@ -256,5 +333,6 @@ _COMMANDS: dict[str, tuple[Callable[[argparse.ArgumentParser], None], str]] = {
     "ik": (_add_ik, "Joint angles for a tool tip position."),
     "fk": (_add_fk, "Tool tip position for joint angles."),
     "robots": (_add_robots, "The robots that come with deltaviz."),
-    "ports": (_add_ports, "Serial ports, with what they are."),
+    "ports": (_add_ports, "Serial ports, with what they are, and which of them has a board."),
+    "monitor": (_add_monitor, "What passes on a link, one line a message."),
 }

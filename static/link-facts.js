@@ -21,6 +21,7 @@ const FACTS = [
   { name: "Motion ahead", title: "How long that lasts", value: ({ link }) => ms(link.ahead_ms, 0) },
   { name: "Dropped", title: "Damaged frames that came from the board since it was connected", value: ({ link }) => String(link.dropped) },
   { name: "Underruns", title: "How often the board had to brake because this computer was late", value: ({ underruns }) => String(underruns) },
+  { name: "Capture", title: "The file that all that passes is added to", whole: true, value: ({ capture }) => captured(capture) },
 ]; // prettier-ignore
 
 /** @param {{store: Store}} parts */
@@ -48,4 +49,11 @@ export function addLinkFacts({ store }) {
  */
 function ms(value, digits) {
   return value === null ? "\u2013" : `${value.toFixed(digits)} ms`;
+}
+
+/** @param {RobotState["capture"]} capture */
+function captured(capture) {
+  if (capture === null) return "off";
+  const lost = capture.lost > 0 ? `, ${capture.lost} records lost` : "";
+  return capture.problem ?? `${capture.name}, ${(capture.size / 1e6).toFixed(1)} MB${lost}`;
 }

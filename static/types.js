@@ -45,6 +45,7 @@
  *   next_step: string | null,
  *   board_time_s: number | null,
  *   underruns: number,
+ *   capture: {name: string, size: number, lost: number, problem: string | null} | null,
  * }} RobotState
  *
  * The frame a jog is meant in. In `camera` the axes are right, away from the viewer, and up.

@@ -17,6 +17,7 @@ MAY_IMPORT = {
     "link": {"mechanism", "robots", "motion", "link"},
     "machine": {"mechanism", "robots", "motion", "link", "machine"},
     "scene": {"mechanism", "robots", "motion", "machine", "scene"},
+    "terminal": {"mechanism", "robots", "motion", "link", "machine", "terminal"},
     "web": {"mechanism", "robots", "motion", "link", "machine", "scene", "web"},
 }
 

@@ -9,16 +9,19 @@ from deltaviz.link.board.port import BoardPort
 from deltaviz.link.messages import BoardMessage, HostMessage
 from deltaviz.link.report import LinkReport
 from deltaviz.link.rules import TICK_HZ
+from deltaviz.link.tap import Tap, untapped
 from deltaviz.link.wire.channel import Channel
 
 
 class MemoryTransport:
     """Board time follows `clock` (seconds), whenever the transport is used."""
 
-    def __init__(self, board: SimulatedBoard, clock: Callable[[], float]) -> None:
+    def __init__(
+        self, board: SimulatedBoard, clock: Callable[[], float], tap: Tap = untapped
+    ) -> None:
         self.board = board
         self._stream = _MemoryStream(board, clock)
-        self._channel = Channel(self._stream, clock)
+        self._channel = Channel(tap(self._stream), clock)
 
     @property
     def closed(self) -> bool:

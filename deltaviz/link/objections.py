@@ -19,10 +19,10 @@ def objection(configure: Configure, *, tick_hz: int) -> str:
     known = next(_broken(configure, tick_hz), None)
     if known is None:
         return (
-            "The board cannot work with this robot's file; its firmware may be made for another "
-            "kind of robot. Choose another robot, or flash the firmware of this deltaviz."
+            "The board cannot work with this robot's file; its firmware may be for another kind "
+            "of robot. Choose another robot, or flash the firmware of this deltaviz."
         )
-    return f"The board cannot drive this robot: {known} Then start deltaviz again."
+    return f"The board cannot drive this robot: {known} Then restart deltaviz."
 
 
 def _broken(c: Configure, tick_hz: int) -> Iterator[str]:
@@ -30,15 +30,14 @@ def _broken(c: Configure, tick_hz: int) -> Iterator[str]:
         name, rate = f"joint {joint + 1}", velocity / V_UNIT
         if rate > tick_hz / 2:
             yield (
-                f"at its top velocity, {name} takes {rate / 1000:.0f} thousand steps a second, "
-                f"and the board makes {tick_hz / 2000:.0f} thousand at most. Lower "
-                "velocity_deg_s, microsteps or the gear in the robot file."
+                f"{name} would take {rate:.0f} steps a second, and {tick_hz // 2} is the most. "
+                "Lower velocity_deg_s, microsteps or gear in the robot file."
             )
         brake = rate / (c.acceleration[joint] / A_UNIT)
         if brake > BRAKE_MAX:
             yield (
-                f"{name} brakes for {brake:.1f} s from its top velocity, and {BRAKE_MAX:g} s is "
-                "the most. Raise acceleration_deg_s2 or lower velocity_deg_s in the robot file."
+                f"{name} would brake for {brake:.1f} s, and {BRAKE_MAX:g} s is the most. "
+                "Raise acceleration_deg_s2 or lower velocity_deg_s in the robot file."
             )
         yield from _homing(c, joint, name)
 
@@ -49,11 +48,11 @@ def _homing(c: Configure, joint: int, name: str) -> Iterator[str]:
     seconds = way / (min(c.homing_fast[joint], c.homing_slow[joint]) / V_UNIT)
     if furthest > HOMING_MICROSTEPS_MAX:
         yield (
-            f"homing may take {name} {furthest} microsteps far, and {HOMING_MICROSTEPS_MAX} is "
-            "the most. Lower max_travel_deg, backoff_deg or microsteps in the robot file."
+            f"{name} would home {furthest} microsteps far, and {HOMING_MICROSTEPS_MAX} is the "
+            "most. Lower max_travel_deg, backoff_deg or microsteps in the robot file."
         )
     elif seconds > HOMING_TIME_MAX:
         yield (
-            f"homing may take {name} {seconds / 60:.0f} minutes, and {HOMING_TIME_MAX / 60:.0f} "
+            f"{name} would home for {seconds / 60:.0f} minutes, and {HOMING_TIME_MAX / 60:.0f} "
             "are the most. Raise slow_deg_s or lower max_travel_deg in the robot file."
         )

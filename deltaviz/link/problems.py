@@ -9,8 +9,8 @@ from deltaviz.link.timing import GREETING_WITHIN, SILENT_AFTER
 
 def silent() -> str:
     return (
-        f"The board has been silent for {SILENT_AFTER:g} s; it brakes by itself when it hears "
-        "nothing. Check its cable and power, then connect."
+        f"The board has been silent for {SILENT_AFTER:g} s; hearing nothing, it brakes by itself. "
+        "Check its cable and power, then connect."
     )
 
 
@@ -21,9 +21,8 @@ def no_answer(impression: Impression) -> str:
             "the computer's TX to the board's RX, then connect."
         )
     return (
-        f"No board answered within {GREETING_WITHIN:g} s: not a byte came. Check its power and "
-        "cable (TX to RX, RX to TX), that its firmware is ours and its baud rate the link's, or "
-        "choose another link; then connect."
+        f"No board answered within {GREETING_WITHIN:g} s: not a byte came. Check its power, cable "
+        "(TX to RX, RX to TX), firmware and baud rate, or choose another link; then connect."
     )
 
 
@@ -42,9 +41,8 @@ def strange(impression: Impression) -> str | None:
             )
         case Kind.NOISE:
             return (
-                "Bytes come, but none that make sense: the baud rate is wrong, or it is another "
-                "device. Start with --link serial://DEVICE?baud=N, or choose another link, then "
-                "connect."
+                "Bytes come, but none that make sense: another baud rate, or another device. "
+                "Choose another link, or start with --link serial://DEVICE?baud=N."
             )
         case Kind.NOTHING | Kind.BOARD:
             return None
@@ -67,8 +65,8 @@ def other_joints(theirs: int, ours: int) -> str:
 
 def other_configuration() -> str:
     return (
-        "The board took another configuration than it was given. Connect again; if it "
-        "happens again, its firmware does not fit this program."
+        "The board took another configuration than it was given. Connect again; if it happens "
+        "again, its firmware does not fit this program."
     )
 
 
@@ -81,14 +79,14 @@ def set_up_for_another(robot: str | None) -> str:
         )
     return (
         f"The board is set up for {robot} and its drivers are on. Choose {robot}, connect and "
-        "disable; or switch the board off and on again. Then connect with this robot."
+        "disable, then choose this robot; or switch the board off and on, then connect."
     )
 
 
 def unanswered(command: str) -> str:
     return (
-        f"The board did not answer '{command}'. Check its cable, then connect again; if it "
-        "happens again, its firmware does not fit this program."
+        f"The board did not answer '{command}'. Check its cable, then connect; if it happens "
+        "again, its firmware does not fit this program."
     )
 
 

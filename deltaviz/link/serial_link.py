@@ -71,7 +71,7 @@ def open_serial(
 
     def broke(reason: str) -> str:
         return (
-            f"The link to {address.target} broke: {reason}. A board that moves brakes by itself. "
+            f"The link to {address.target} broke: {reason}. A moving board brakes by itself. "
             "Check its cable and power, then connect; nothing is resumed."
         )
 

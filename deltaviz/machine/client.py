@@ -18,6 +18,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, Self
 
+from deltaviz.link.capture.writer import check_capture
 from deltaviz.link.links import Link, Links
 from deltaviz.link.urls import check_link
 from deltaviz.machine import intent as i
@@ -68,18 +69,22 @@ class MachineClient:
         atexit.register(self.close)
 
     @classmethod
-    def start(cls, *, robot: str = "stm32", link: str = "sim://") -> Self:
+    def start(
+        cls, *, robot: str = "stm32", link: str = "sim://", capture: Path | None = None
+    ) -> Self:
         """Start the process; `ready` waits until it has connected.
 
-        `robot` is a preset's name or a robot file's path. Raises RobotFileError and LinkError
-        before anything is started.
+        `robot` is a preset's name or a robot file's path; `capture` is written. Raises
+        RobotFileError, LinkError and CaptureError before anything is started.
         """
         check_link(link)
+        if capture is not None:
+            check_capture(capture)
         loaded = load_robot(robot)
         robots = {name: name for name in preset_names()}
         robot_id = robot if robot in robots else loaded.name
         robots[robot_id] = robot if robot in robots else str(Path(robot).resolve())
-        setup = Setup(robot_id, robots, link)
+        setup = Setup(robot_id, robots, link, None if capture is None else str(capture.resolve()))
         stops, their_stops = socket.socketpair()
         talk, their_talk = socket.socketpair()
         with their_stops, their_talk:

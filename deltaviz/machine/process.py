@@ -16,11 +16,17 @@ import sys
 import time
 import traceback
 from collections.abc import Generator
+from dataclasses import replace
+from datetime import UTC, datetime
 from functools import partial
+from importlib.metadata import version
 from multiprocessing.connection import wait
+from pathlib import Path
 from typing import Any
 
+from deltaviz.link.capture.writer import CaptureWriter
 from deltaviz.link.links import Links
+from deltaviz.link.tap import untapped
 from deltaviz.link.transport import Transport
 from deltaviz.link.urls import open_link
 from deltaviz.machine import intent as i
@@ -77,11 +83,16 @@ class Process:
         self._stopped_after = 0
         self._ends: float | None = None  # when it ends at the latest
         self.told_to_end = False  # by a signal, which may come in the middle of anything
+        self._capture: CaptureWriter | None = None
         self._changed = True
         self._pictured = float("-inf")
         self._shown: object = None
         self._periods = Periods()
         self._ticked: float | None = None
+
+    def capture_to(self, path: Path, about: dict[str, str]) -> None:
+        """Record what passes on the link. Raises CaptureError."""
+        self._capture = CaptureWriter(path, about)
 
     def _end(self, reason: str) -> None:
         """Brake; once at rest, `run` returns."""
@@ -98,6 +109,8 @@ class Process:
                     self._wait()
         finally:
             self._keeper.close()
+            if self._capture is not None:
+                self._capture.close()
 
     def tell_failure(self, problem: str) -> None:
         """The last words to the parent, after an error."""
@@ -163,7 +176,8 @@ class Process:
         return self._controller.handle(what, time.monotonic())
 
     def _open_link(self, link: str, robot: Robot) -> Transport:
-        return open_link(self._links.url(link), robot)
+        tap = untapped if self._capture is None else partial(self._capture.tap, link)
+        return open_link(self._links.url(link), robot, tap)
 
     def _show(self, now: float) -> None:
         """Tell the parent what there is to see; if it is slow, only the newest."""
@@ -173,6 +187,8 @@ class Process:
         if now - self._pictured < due:
             return
         snapshot = self._controller.snapshot(now)
+        if self._capture is not None:
+            snapshot = replace(snapshot, capture=self._capture.status)
         shown = (snapshot.mode, snapshot.counts, snapshot.link.connected, snapshot.holder)
         self._changed = shown != self._shown  # show what follows a change soon, too
         self._shown = shown
@@ -215,6 +231,8 @@ def main() -> int:
         gc.collect()
         gc.freeze()
         _come_first()
+        if setup.capture is not None:
+            process.capture_to(Path(setup.capture), _about(setup))
         process.run()
     except Exception as error:
         traceback.print_exc()
@@ -222,6 +240,14 @@ def main() -> int:
             process.tell_failure(f"{type(error).__name__}: {error}")
         return 1
     return 0
+
+
+def _about(setup: Setup) -> dict[str, str]:
+    return {
+        "program": f"deltaviz {version('deltaviz')}",
+        "started": datetime.now(UTC).isoformat(timespec="milliseconds"),
+        "robot": setup.robot,
+    }
 
 
 def _come_first() -> None:

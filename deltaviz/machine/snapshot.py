@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
+from deltaviz.link.capture.writer import CaptureStatus
 from deltaviz.machine.mode import Mode
 from deltaviz.motion.held import Held
 
@@ -69,3 +70,4 @@ class Snapshot:
     board_time: float | None  # s
     underruns: int
     counts: tuple[int, ...] | None
+    capture: CaptureStatus | None = None

@@ -31,11 +31,12 @@ STOPPED_SINCE = i.Refused(
 
 @dataclass(frozen=True, slots=True)
 class Setup:
-    """`robots` are names or paths by id; `link` is the URL that was given."""
+    """`robots` are names or paths by id; `link` is the URL that was given, `capture` a path."""
 
     robot: str
     robots: dict[str, str]
     link: str
+    capture: str | None = None
 
 
 @dataclass(frozen=True, slots=True)

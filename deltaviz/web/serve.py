@@ -12,6 +12,7 @@ import sys
 import threading
 import webbrowser
 from collections.abc import Callable, Coroutine
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from deltaviz.web.listening import ListenError, listen, name_of
@@ -33,11 +34,14 @@ class StartError(Exception):
     """Why the server cannot start, for a person."""
 
 
-def serve(*, robot: str, link: str, host: str, port: int, browser: bool) -> int:
+def serve(
+    *, robot: str, link: str, host: str, port: int, browser: bool, capture: Path | None = None
+) -> int:
     """Serve until a signal; the exit status.
 
     `robot` is a preset's name or a robot file, `link` a URL, `host` a loopback address; port 0
-    takes any free one. Status 1: it could not start; 2: such an address is not allowed.
+    takes any free one. What passes on the link is added to the file `capture`. Status 1: it could
+    not start; 2: such an address is not allowed.
     """
     logging.basicConfig(level=logging.WARNING, format="%(levelname)s %(name)s: %(message)s")
     try:
@@ -47,7 +51,7 @@ def serve(*, robot: str, link: str, host: str, port: int, browser: bool) -> int:
     with contextlib.closing(listener):
         life = _Life(listener, browser=browser)
         try:
-            asyncio.run(life.live(robot=robot, link=link))
+            asyncio.run(life.live(robot=robot, link=link, capture=capture))
         except StartError as error:
             return _say(str(error), status=FAILED)
     return OK
@@ -67,21 +71,21 @@ class _Life:
         self._machine: MachineClient | None = None
         self._scene: Scene | None = None
 
-    async def live(self, *, robot: str, link: str) -> None:
+    async def live(self, *, robot: str, link: str, capture: Path | None) -> None:
         loop = asyncio.get_running_loop()
         for number in _SIGNALS:
             loop.add_signal_handler(number, self._end)
         try:
-            server = await self._start(robot, link)
+            server = await self._start(robot, link, capture)
             serving = await self._unless_ending(server.serve(sockets=[self._listener]))
             server.should_exit = True
             await serving
         finally:
             await self._close()
 
-    async def _start(self, robot: str, link: str) -> Server:
+    async def _start(self, robot: str, link: str, capture: Path | None) -> Server:
         # Most of the start is loading: the machine's process does its share beside ours.
-        starting = asyncio.create_task(asyncio.to_thread(_start_machine, robot, link))
+        starting = asyncio.create_task(asyncio.to_thread(_start_machine, robot, link, capture))
         loading = asyncio.create_task(asyncio.to_thread(_load))
         self._machine = await starting
         await loading
@@ -129,6 +133,9 @@ class _Life:
     def _tell(self) -> None:
         url = f"http://{self._host}:{self._port}"
         print(f"deltaviz is at {url} (Ctrl-C ends it)", flush=True)
+        problem = None if self._machine is None else self._machine.snapshot.link.problem
+        if problem is not None:
+            print(f"deltaviz: {problem}", file=sys.stderr, flush=True)
         if self._browser and _has_desktop():
             threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()
 
@@ -151,14 +158,15 @@ class _Life:
         await asyncio.gather(*(asyncio.to_thread(ending) for ending in endings))
 
 
-def _start_machine(robot: str, link: str) -> MachineClient:
+def _start_machine(robot: str, link: str, capture: Path | None) -> MachineClient:
+    from deltaviz.link.capture.reader import CaptureError
     from deltaviz.link.urls import LinkError
     from deltaviz.machine.client import MachineClient
     from deltaviz.robots import RobotFileError
 
     try:
-        return MachineClient.start(robot=robot, link=link)
-    except (LinkError, RobotFileError) as error:
+        return MachineClient.start(robot=robot, link=link, capture=capture)
+    except (LinkError, RobotFileError, CaptureError) as error:
         raise StartError(str(error)) from None
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import asdict
 from typing import Any
 
 from deltaviz.machine.snapshot import LinkStatus, Snapshot
@@ -43,6 +44,7 @@ def state_json(snapshot: Snapshot, *, robot: Robot, client: str, now: float) -> 
         "next_step": snapshot.next_step,
         "board_time_s": None if snapshot.board_time is None else _number(snapshot.board_time),
         "underruns": snapshot.underruns,
+        "capture": None if snapshot.capture is None else asdict(snapshot.capture),
     }
 
 

@@ -91,6 +91,7 @@ READY: dict[str, Any] = {
     "next_step": None,
     "board_time_s": 1.0,
     "underruns": 0,
+    "capture": None,
 }
 PORTS = [{"id": "sim", "description": "Simulated board"}]
 ROBOT: dict[str, Any] = {

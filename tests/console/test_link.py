@@ -81,7 +81,7 @@ def test_how_the_link_is_doing(page: Page, machine: Any) -> None:
     expect(facts).to_have_text(
         [
             "Boardsimulated python", "Last news4 ms", "Round trip0.8 ms", "Queue6 / 64",
-            "Motion ahead58 ms", "Dropped0", "Underruns0",
+            "Motion ahead58 ms", "Dropped0", "Underruns0", "Captureoff",
         ]
     )  # fmt: skip
     machine.set_link(dropped=3, round_trip_ms=None)
@@ -89,6 +89,13 @@ def test_how_the_link_is_doing(page: Page, machine: Any) -> None:
     expect(facts.nth(2)).to_have_text("Round trip–")
     expect(facts.nth(5)).to_have_text("Dropped3")
     expect(facts.nth(6)).to_have_text("Underruns2")
+    capture = {"name": "today.capture", "size": 3_210_000, "lost": 0, "problem": None}
+    machine.set(capture=capture)
+    expect(facts.nth(7)).to_have_text("Capturetoday.capture, 3.2 MB")
+    machine.set(capture=capture | {"lost": 12})
+    expect(facts.nth(7)).to_have_text("Capturetoday.capture, 3.2 MB, 12 records lost")
+    machine.set(capture=capture | {"problem": "The capture has ended: No space left on device."})
+    expect(facts.nth(7)).to_contain_text("No space left")
     machine.set_link(phase="closed")
     expect(page.locator("#link-facts")).to_be_hidden()
 

@@ -86,14 +86,19 @@ class CableBench(Bench):
         transport = self.transport
         if not self.cable.plugged or self._host is None or transport is None or transport.closed:
             return
+        self._tell(data)
+
+    def _tell(self, data: bytes) -> None:
+        if self._host is None or self.transport is None:
+            return
         self.cable.say(data)
         self._told += len(data)
-        wait_for_bytes(transport.fileno(), self._told - self._host.read_)
+        wait_for_bytes(self.transport.fileno(), self._told - self._host.read_)
 
     def _turn(self) -> None:
         keeper = self._keeper
         if keeper is None:
-            keeper = LinkKeeper(self.controller, open_link=self._open, opener=_at_once)
+            keeper = LinkKeeper(self.controller, open_link=self._open, opener=at_once)
             self._keeper = keeper
         keeper.receive(self.now)
         messages = self.controller.tick(self.now)
@@ -106,7 +111,7 @@ class CableBench(Bench):
         keeper.follow()
 
 
-def _at_once(open_: Callable[[], Transport]) -> Future[Transport]:
+def at_once(open_: Callable[[], Transport]) -> Future[Transport]:
     future: Future[Transport] = Future()
     open_now(open_, future)
     return future

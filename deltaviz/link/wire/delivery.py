@@ -10,28 +10,24 @@ from collections import deque
 from dataclasses import dataclass
 
 from deltaviz.link.messages import (
-    PROTOCOL_VERSION,
     BoardMessage,
     BoardState,
     Configure,
     Enable,
     EStop,
     Hello,
-    HelloReply,
     Home,
     HostMessage,
     Stop,
-    StopCause,
     Telemetry,
     TelemetryFlags,
 )
 from deltaviz.link.timing import COMMAND_REPEAT
-from deltaviz.link.wire.codec import decode_board, encode, type_of
+from deltaviz.link.wire.codec import encode
 from deltaviz.link.wire.commands import COMMANDS, answered_by, name_of, next_sequence
 from deltaviz.link.wire.errors import Malformed
 from deltaviz.link.wire.frames import Frame, FrameReader, write_frame
-
-_HELLO_REPLY = type_of(HelloReply)
+from deltaviz.link.wire.versions import decode_from_any_board
 
 
 @dataclass(slots=True)
@@ -83,7 +79,7 @@ class Delivery:
         said: list[BoardMessage] = []
         for frame in self._reader.feed(data):
             try:
-                message = _decode(frame)
+                message = decode_from_any_board(frame)
             except Malformed:
                 self._malformed += 1
                 continue
@@ -150,19 +146,6 @@ class Delivery:
             and TelemetryFlags.HOMED not in telemetry.flags
         ):
             self._outstanding = None
-
-
-def _decode(frame: Frame) -> BoardMessage:
-    """In every version of the protocol HelloReply begins with that version: of another one no
-    more than this is understood. Raises Malformed.
-    """
-    version = int.from_bytes(frame.payload[:2], "little")
-    if frame.type != _HELLO_REPLY or len(frame.payload) < 2 or version == PROTOCOL_VERSION:
-        return decode_board(frame.type, frame.payload)
-    return HelloReply(
-        version=version, board="", build="", joints=0, tick_hz=0, queue_places=0, boot=0,
-        last_epoch=0, homed=False, configuration=0, last_stop=StopCause.NONE,
-    )  # fmt: skip
 
 
 def _overrules(message: HostMessage, command: HostMessage) -> bool:

@@ -17,7 +17,7 @@ from deltaviz.link.wire.errors import Unsendable
 
 PAYLOAD_MAX = load_description().payload_max
 _DECODED_MAX = PAYLOAD_MAX + FRAME_OVERHEAD
-_ENCODED_MAX = _DECODED_MAX + _DECODED_MAX // 254 + 1
+ENCODED_MAX = _DECODED_MAX + _DECODED_MAX // 254 + 1
 
 _stuffed: Callable[[bytes], bytes] = cast(Any, cobs).encode
 _plain: Callable[[bytes], bytes] = cast(Any, cobs).decode
@@ -50,10 +50,10 @@ class FrameReader:
         else:
             partial = self._partial + partial
         # What is too long stays so, and need not be kept.
-        self._partial = partial[: _ENCODED_MAX + 1]
+        self._partial = partial[: ENCODED_MAX + 1]
         frames: list[Frame] = []
         for encoded in ended:
-            frame = _decode(encoded)
+            frame = decode_frame(encoded)
             if frame is not None:
                 frames.append(frame)
             elif encoded:
@@ -61,8 +61,9 @@ class FrameReader:
         return frames
 
 
-def _decode(encoded: bytes) -> Frame | None:
-    if len(encoded) > _ENCODED_MAX:
+def decode_frame(encoded: bytes) -> Frame | None:
+    """What stands between two zero bytes; None if it is no frame."""
+    if len(encoded) > ENCODED_MAX:
         return None
     try:
         decoded = _plain(encoded)
