@@ -296,6 +296,7 @@ def _names(text: str) -> tuple[str, ...]:
 def _monitor(options: argparse.Namespace) -> int:
     from deltaviz.link.capture.reader import CaptureError
     from deltaviz.link.capture.spoken import ReplayError
+    from deltaviz.link.traffic import Sender
     from deltaviz.link.transport import LinkError
     from deltaviz.terminal import monitor
 
@@ -306,7 +307,8 @@ def _monitor(options: argparse.Namespace) -> int:
     try:
         if options.capture is not None and options.replay is not None:
             return monitor.replay(options.capture, options.replay, as_json=options.json)
-        filter_ = monitor.Filter(options.only, options.hide, options.sender)
+        sender = None if options.sender is None else Sender(options.sender)
+        filter_ = monitor.Filter(options.only, options.hide, sender)
         return monitor.run(
             url=options.url,
             capture=options.capture,

@@ -74,7 +74,7 @@ def _given(url: str) -> Link:
         return Link(scheme, url, url)
     address = serial_address(url)
     if address.is_port:
-        (id_,) = port_ids([address.target], _RESERVED)
+        (id_,) = port_ids([os.path.basename(address.target)], _RESERVED)
         return Link(id_, url, f"Serial port {address.target}")
     return Link(scheme, url, url)
 
