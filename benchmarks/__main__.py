@@ -19,6 +19,7 @@ BENCHMARKS = {
     "follower": ("One tick of the follower", ["--ticks", "200"]),
     "loop": ("The control loop, alone and on busy cores", ["--seconds", "5"]),
     "watched_loop": ("The control loop while browsers watch", ["--seconds", "5"]),
+    "link": ("The link: round trip, and the cost of a capture", ["--seconds", "5"]),
     "latency": ("Pointer to step", ["--moves", "10"]),
 }
 
