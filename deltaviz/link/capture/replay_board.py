@@ -27,7 +27,7 @@ def replay_board(records: Sequence[Record]) -> Iterator[Event]:
     if replies[0].message.configuration:
         raise ReplayError("the board was configured before it, so where its arms were is unknown.")
     clock = BoardClock(said, tick_hz=replies[0].message.tick_hz)
-    port = BoardPort(_board(replies[0].message, telemetry, now=clock.tick(records[0].at)))
+    port = BoardPort(_board(replies[0].message, telemetry, now=clock.power_up(records[0].at)))
     then = deque(item for item in said if _is_answer(item))
     direction = Direction(Sender.BOARD)
     sent = Direction(Sender.HOST)

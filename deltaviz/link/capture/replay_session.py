@@ -8,14 +8,19 @@ from deltaviz.link import messages as m
 from deltaviz.link.capture.records import Kind, Record
 from deltaviz.link.capture.spoken import Event, ReplayError, of_kind, spoken
 from deltaviz.link.configuration import configuration_hash
-from deltaviz.link.flight import POSITION_UNIT, VELOCITY_UNIT
+from deltaviz.link.flight import (
+    POSITION_UNIT,
+    TIP_POSITION_UNIT,
+    TIP_VELOCITY_UNIT,
+    VELOCITY_UNIT,
+)
 from deltaviz.link.session import Session
 from deltaviz.link.wire.codec import decode_host
 from deltaviz.link.wire.commands import COMMANDS
 from deltaviz.link.wire.delivery import Delivery
 from deltaviz.link.wire.errors import Malformed
 from deltaviz.link.wire.frames import decode_frame
-from deltaviz.motion.knot import Knot
+from deltaviz.motion.knot import CartesianKnot, Knot
 
 
 def replay_session(records: Sequence[Record]) -> Iterator[Event]:
@@ -128,16 +133,21 @@ class _Replay:
                 session.reset(at)
             case m.Arm():
                 session.begin()
-            case m.Segment():
+            case m.Segment() | m.CartesianSegment():
                 session.segment(self._knot(message), at)
             case _:
                 pass
 
-    def _knot(self, segment: m.Segment) -> Knot:
+    def _knot(self, segment: m.Segment | m.CartesianSegment) -> Knot | CartesianKnot:
         if self._session.board is None:
             raise RuntimeError("no board has answered")
+        duration = segment.duration / self._session.board.tick_hz
+        if isinstance(segment, m.CartesianSegment):
+            (x, y, z), (vx, vy, vz) = segment.p, segment.v
+            p, v = TIP_POSITION_UNIT, TIP_VELOCITY_UNIT
+            return CartesianKnot(duration, (x / p, y / p, z / p), (vx / v, vy / v, vz / v))
         return Knot(
-            segment.duration / self._session.board.tick_hz,
+            duration,
             tuple(p / POSITION_UNIT / s for p, s in zip(segment.p, self._scale, strict=True)),
             tuple(v / VELOCITY_UNIT / s for v, s in zip(segment.v, self._scale, strict=True)),
         )

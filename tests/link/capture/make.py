@@ -47,7 +47,11 @@ class CapturedRun:
         board = SimulatedBoard(start_homed=True, boot=7, now=0xFFFF_FFFF - 60_000)
         return MemoryTransport(board, lambda: self.now, partial(self._capture.tap, link))
 
-    def do(self, intent: i.Intent) -> None:
+    def do(self, intent: Callable[[float], i.Intent]) -> None:
+        """One turn, in which somebody wishes something at this time."""
+        self.turn(lambda: self._take(intent(self.now)))
+
+    def _take(self, intent: i.Intent) -> None:
         assert self.controller.handle(intent, self.now) == i.Accepted()
 
     def until(self, condition: Callable[[], bool]) -> None:
@@ -60,9 +64,11 @@ class CapturedRun:
         for _ in range(round(seconds / TURN)):
             self.turn()
 
-    def turn(self) -> None:
+    def turn(self, wish: Callable[[], None] = lambda: None) -> None:
+        """As the machine's process does it."""
         self.now = round(self.now + TURN, 6)
         self._keeper.receive(self.now)
+        wish()
         self._keeper.send(self.controller.tick(self.now))
         while self.controller.hungry(self.now):
             self._keeper.send(self.controller.tick(self.now))
@@ -76,15 +82,15 @@ class CapturedRun:
 def make(path: Path) -> None:
     run = CapturedRun(path)
     run.until(lambda: run.controller.mode is Mode.IDLE)
-    run.do(i.MoveToPoint(ME, (40.0, 10.0, -270.0), 1.0))
+    run.do(lambda _: i.MoveToPoint(ME, (40.0, 10.0, -270.0), 1.0))
     run.run(0.2)
-    run.controller.stop("Stop was pressed", run.now)
+    run.do(lambda _: i.Stop(ME, "Stop was pressed"))
     run.until(lambda: run.controller.mode is Mode.IDLE)
-    run.do(i.StepPoint(ME, (0.0, -5.0, -5.0)))
+    run.do(lambda _: i.StepPoint(ME, (0.0, -5.0, -5.0)))
     run.until(lambda: run.controller.mode is Mode.IDLE)
-    run.do(i.JogStart(ME, "jog", i.JogFrame.BASE, (80.0, 0.0, -40.0), run.now))
+    run.do(lambda now: i.JogStart(ME, "jog", i.JogFrame.BASE, (80.0, 0.0, -40.0), now))
     run.run(0.15)
-    run.controller.estop("E-stop was pressed", run.now)
+    run.do(lambda _: i.EStop(ME, "E-stop was pressed"))
     run.run(0.05)
     run.close()
 
