@@ -14,7 +14,8 @@ EStop cuts the present piece, too.
 What the board answers: `Refused(command, reason)` or `Done(command)` to Enable, Arm, Reset, Tool
 and Home (Done("home") comes when it stands homed at the ready pose); `Configured` to Configure;
 `HelloReply` to Hello; `Stopped` to Stop. A segment is answered only when refused, a Keep never.
-`command` is the message's class name in lower case.
+`command` is the message's class name in lower case. These five are the board's events, too: it says
+Stopped and Refused also where nobody waits for them, and there is no other message of events.
 """
 
 from __future__ import annotations
@@ -307,6 +308,13 @@ class Tool:
 
 @dataclass(frozen=True, slots=True)
 class HelloReply:
+    """Who the board is, and how it stands. `version` is the first field in every version of the
+    protocol; of another one, a host reads no further.
+
+    A board proves by `boot` and `homed` that it never lost its counts: they are lost with its
+    power, and `homed` with its drivers or with another configuration.
+    """
+
     version: int
     board: str
     build: str
@@ -322,6 +330,8 @@ class HelloReply:
 
 @dataclass(frozen=True, slots=True)
 class Configured:
+    """The configuration that the board has now, by the CRC-32 of Configure's payload."""
+
     configuration: int
 
 

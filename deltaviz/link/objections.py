@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from deltaviz.link.configuration import A_UNIT, V_UNIT
 from deltaviz.link.messages import Configure
 
+STEP_TICKS = 2.004  # a step every other tick, and 0.2 % for the slack of speeds
 BRAKE_MAX = 1.0  # s from top velocity
 HOMING_MICROSTEPS_MAX = 1 << 20
 HOMING_TIME_MAX = 600.0  # s
@@ -28,9 +29,10 @@ def objection(configure: Configure, *, tick_hz: int) -> str:
 def _broken(c: Configure, tick_hz: int) -> Iterator[str]:
     for joint, velocity in enumerate(c.velocity):
         name, rate = f"joint {joint + 1}", velocity / V_UNIT
-        if rate > tick_hz / 2:
+        most = tick_hz / STEP_TICKS
+        if rate > most:
             yield (
-                f"{name} would take {rate:.0f} steps a second, and {tick_hz // 2} is the most. "
+                f"{name} would take {rate:.0f} steps a second, and {most:.0f} is the most. "
                 "Lower velocity_deg_s, microsteps or gear in the robot file."
             )
         brake = rate / (c.acceleration[joint] / A_UNIT)

@@ -12,8 +12,11 @@ _DENIED = (errno.EACCES, errno.EPERM)
 _GONE = (errno.EIO, errno.ENXIO, errno.ENODEV)
 
 
-def trouble(device: str, error: Exception) -> str:
-    """What `error`, raised while `device` was opened, means. All sentences end with a way out."""
+def trouble(device: str, error: Exception, *, group: str | None = None) -> str:
+    """What `error`, raised while `device` was opened, means. All sentences end with a way out.
+
+    `group` is the one that may open it; else it is looked up.
+    """
     number = _number(error)
     if number == errno.ENOENT:
         return (
@@ -23,7 +26,7 @@ def trouble(device: str, error: Exception) -> str:
     if number in _IN_USE:
         return f"{device} is in use by {_users(device)}. End that, then connect."
     if number in _DENIED:
-        return f"{device} may not be opened. {_way_in(device)}"
+        return f"{device} may not be opened. {_way_in(group or _group(device))}"
     if number in _GONE:
         return (
             f"{device} does not work ({os.strerror(number)}). Pull the board's cable, plug it in "
@@ -67,8 +70,7 @@ def _users(device: str) -> str:
     return " and ".join(names) or "another program"
 
 
-def _way_in(device: str) -> str:
-    group = _group(device)
+def _way_in(group: str | None) -> str:
     if group is None:
         return "Ask its owner for permission."
     return (

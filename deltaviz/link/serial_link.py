@@ -68,14 +68,18 @@ def open_serial(
     """Opens what `url` names, for this program alone. Raises LinkError. May take seconds."""
     address = serial_address(url)
     stream, release = open_stream(address)
+    name = address.target
+    return StreamTransport(
+        tap(stream), broke=lambda reason: broke(name, reason), release=release, clock=clock
+    )
 
-    def broke(reason: str) -> str:
-        return (
-            f"The link to {address.target} broke: {reason}. A moving board brakes by itself. "
-            "Check its cable and power, then connect; nothing is resumed."
-        )
 
-    return StreamTransport(tap(stream), broke=broke, release=release, clock=clock)
+def broke(name: str, reason: str) -> str:
+    """What to tell of a link that was open and has ended."""
+    return (
+        f"The link to {name} broke: {reason}. A moving board brakes by itself. Check its cable and "
+        "power, then connect; nothing is resumed."
+    )
 
 
 def open_stream(address: SerialAddress) -> tuple[ByteStream, Callable[[], None]]:

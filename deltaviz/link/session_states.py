@@ -67,10 +67,10 @@ class Turn(StrEnum):
     # What the board says.
     REFUSED = "Arm or Home refused"
     HOMED = "Done(home)"
-    ENDED = "Telemetry: HOMING no more"
+    ENDED = "homing has ended"
     STOPPED = "Stopped"
-    FAULTED = "Telemetry: FAULT"
-    ESTOPPED = "Telemetry: ESTOP"
+    FAULTED = "FAULT reported"
+    ESTOPPED = "ESTOP reported"
 
 
 MOTIONS: Final[Mapping[tuple[Motion, Turn], Motion]] = {

@@ -178,7 +178,7 @@ def with_joints(robot: Robot, **changes) -> Robot:
 CONTRADICTIONS: list[tuple[Callable[[Robot], Robot], str]] = [
     (
         lambda r: with_drive(r, microsteps_per_rad=(509.0, 50_000.0, 509.0)),
-        "joint 2 would take 296706 steps a second, and 100000 is the most",
+        "joint 2 would take 296706 steps a second, and 99800 is the most",
     ),
     (
         lambda r: with_joints(r, acceleration=(80.0, 80.0, 2.0)),

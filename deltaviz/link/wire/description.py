@@ -89,6 +89,9 @@ class Description(Struct, frozen=True, forbid_unknown_fields=True):
     payload_max: int
     command_repeat_ms: int
     message: tuple[MessageDescription, ...]
+    meaning: dict[str, dict[str, str]] = msgspec.field(  # of the enumerations' values
+        default_factory=dict[str, dict[str, str]]
+    )
 
     def __post_init__(self) -> None:
         for values in ([m.name for m in self.message], [m.type for m in self.message]):
