@@ -7,7 +7,7 @@ import pytest
 from deltaviz.link.catalogue import catalogue
 
 MESSAGE_BOX = 200  # characters that it shows without being scrolled
-WAYS_OUT = ("connect", "Connect", "Choose")
+WAYS_OUT = ("connect", "Connect", "Choose", "restart")
 
 
 @pytest.mark.parametrize(("case", "sentence"), catalogue(), ids=[case for case, _ in catalogue()])
