@@ -330,6 +330,24 @@ def test_a_segment_that_the_board_refuses_stops_with_its_words(bench: Any) -> No
     bench.check_limits()
 
 
+def test_homing_waits_for_the_answer_to_a_stop(bench: Any, monkeypatch: Any) -> None:
+    """Its answers are lost, while the board was enabled: the stop is still repeated."""
+    bench.do(i.Disable(ME))
+    bench.run(0.02)
+    take = bench.board.take
+    lost = lambda: [x for x in take() if not isinstance(x, m.Stopped)]  # noqa: E731
+    monkeypatch.setattr(bench.board, "take", lost)
+    bench.do(i.Stop(ME, "Stop pressed"))
+    assert bench.do(i.Enable(ME)) == ACCEPTED
+    bench.run_until(lambda: bench.mode is Mode.UNHOMED)
+    refused = bench.do(i.Home(ME))
+    assert isinstance(refused, i.Refused)
+    assert "not ready" in refused.detail
+    monkeypatch.setattr(bench.board, "take", take)
+    bench.run(0.02)
+    assert bench.do(i.Home(ME)) == ACCEPTED
+
+
 # The same tests with a check taken out must fail: they do see what they claim to see.
 
 
