@@ -54,6 +54,7 @@ function ms(value, digits) {
 /** @param {RobotState["capture"]} capture */
 function captured(capture) {
   if (capture === null) return "off";
-  const lost = capture.lost > 0 ? `, ${capture.lost} records lost` : "";
-  return capture.problem ?? `${capture.name}, ${(capture.size / 1e6).toFixed(1)} MB${lost}`;
+  const { name, size, lost, problem } = capture;
+  const written = size < 1e6 ? `${Math.round(size / 1e3)} kB` : `${(size / 1e6).toFixed(1)} MB`;
+  return problem ?? `${name}, ${written}${lost > 0 ? `, ${lost} records lost` : ""}`;
 }

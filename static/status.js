@@ -90,7 +90,7 @@ export class Status {
    * @param {boolean} stale
    */
   #drawLink({ id, connected, phase, age_ms }, stale) {
-    const old = stale || !connected || age_ms === null || age_ms > OLD_MS;
+    const old = stale || (connected ? age_ms === null || age_ms > OLD_MS : phase === "closed");
     const tone = old ? "warn" : "quiet";
     const now = performance.now();
     if (tone === this.#link.dataset["tone"] && now - this.#ageShown < AGE_SHOWN_MS) return;

@@ -74,9 +74,15 @@ def _given(url: str) -> Link:
         return Link(scheme, url, url)
     address = serial_address(url)
     if address.is_port:
-        (id_,) = port_ids([os.path.basename(address.target)], _RESERVED)
+        (id_,) = port_ids([_short(address.target)], _RESERVED)
         return Link(id_, url, f"Serial port {address.target}")
     return Link(scheme, url, url)
+
+
+def _short(device: str) -> str:
+    """A name made to be stable, such as those in /dev/serial/by-id, is known by its end."""
+    below = device.removeprefix("/dev/")
+    return below if below != device and below.count("/") < 2 else os.path.basename(device)
 
 
 def _same_device(device: str, url: str) -> bool:

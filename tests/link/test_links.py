@@ -77,6 +77,20 @@ def test_a_port_by_another_name_is_the_same_port(plugged_in, tmp_path: Path):
 
 @pytest.mark.parametrize(
     ("url", "id_"),
+    [
+        ("/dev/ttyACM3", "ttyacm3"),
+        ("/dev/pts/7", "pts-7"),
+        ("/dev/serial/by-id/usb-1a86_CH340-if00", "usb-1a86-ch340-if00"),
+        ("./here/ttyBOARD", "ttyboard"),
+        ("COM7", "com7"),
+    ],
+)
+def test_a_port_goes_by_the_end_of_its_name(plugged_in, url, id_):
+    assert Links(url).given.id == id_
+
+
+@pytest.mark.parametrize(
+    ("url", "id_"),
     [("sim://?homed=0", "sim"), ("socket://h:1", "socket"), ("rfc2217://h:1", "rfc2217")],
 )
 def test_other_links_go_by_what_they_are(plugged_in, url, id_):
