@@ -10,6 +10,7 @@ import contextlib
 import fcntl
 import os
 import select
+import socket
 import struct
 import termios
 import time
@@ -97,3 +98,38 @@ class Counted:
 
     def close(self) -> None:
         self._stream.close()
+
+
+class SocketCable:
+    """The same over TCP: the host connects to `device`."""
+
+    def __init__(self) -> None:
+        self._listener = socket.create_server(("127.0.0.1", 0))
+        self._far: socket.socket | None = None
+        self.device = f"socket://127.0.0.1:{self._listener.getsockname()[1]}"
+        self.plugged = True
+
+    def say(self, data: bytes) -> None:
+        self._connection().sendall(data)
+
+    def hear_bytes(self, count: int) -> bytes:
+        data = b""
+        while len(data) < count:
+            part = self._connection().recv(count - len(data))
+            assert part, f"{len(data)} of {count} bytes have come"
+            data += part
+        return data
+
+    def unplug(self) -> None:
+        if self.plugged:
+            self.plugged = False
+            self._listener.close()
+            if self._far is not None:
+                self._far.close()
+
+    def _connection(self) -> socket.socket:
+        if self._far is None:
+            self._far, _ = self._listener.accept()
+            self._far.settimeout(PATIENCE)
+            self._far.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        return self._far

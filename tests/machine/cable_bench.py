@@ -16,7 +16,7 @@ from deltaviz.link.transport import Transport
 from deltaviz.machine.link_keeper import LinkKeeper
 from deltaviz.machine.opener import open_now
 from deltaviz.robots import Robot
-from tests.link.cable import Cable, Counted, wait_for_bytes
+from tests.link.cable import Cable, Counted, SocketCable, wait_for_bytes
 from tests.machine.conftest import Bench
 
 LINK = "ttyusb0"
@@ -25,8 +25,11 @@ LINK = "ttyusb0"
 class CableBench(Bench):
     """`unplug` pulls the plug; `plug_in` gives the same board, or a new one, a new cable."""
 
-    def __init__(self, robot: Robot, *, homed: bool = True) -> None:
-        self.cable = Cable()
+    def __init__(
+        self, robot: Robot, *, homed: bool = True, cable: type[Cable] | type[SocketCable] = Cable
+    ) -> None:
+        self._new_cable = cable
+        self.cable = cable()
         self.port: BoardPort | None = None
         self._keeper: LinkKeeper | None = None
         self._host: Counted | None = None
@@ -40,7 +43,7 @@ class CableBench(Bench):
 
     def plug_in(self, board: SimulatedBoard | None = None, *, homed: bool = False) -> None:
         self.cable.unplug()
-        self.cable = Cable()
+        self.cable = self._new_cable()
         self._host = None
         self._set_board(board or SimulatedBoard(start_homed=homed, boot=len(self.boards) + 1))
 

@@ -15,6 +15,7 @@ from deltaviz.machine.mode import Mode
 from deltaviz.machine.snapshot import LinkPhase
 from deltaviz.machine.transitions import AT_REST
 from deltaviz.robots import Robot
+from tests.link.cable import SocketCable
 from tests.machine.cable_bench import LINK, CableBench
 from tests.machine.test_broken import (
     ACCEPTED,
@@ -192,6 +193,21 @@ def test_a_board_that_was_switched_off_meanwhile_has_to_be_homed(bench: CableBen
     assert not bench.snapshot.homed
     assert bench.do(i.Enable(ME)) == ACCEPTED
     bench.run_until(lambda: bench.mode is Mode.UNHOMED)
+
+
+def test_a_serial_server_that_goes_away(stm32: Robot) -> None:
+    bench = CableBench(stm32, cable=SocketCable)
+    bench.run_until(lambda: bench.mode is Mode.IDLE)
+    jogging(bench)
+    bench.unplug()
+    bench.run_until(lambda: bench.mode is Mode.OFFLINE, within=1.1)
+    bench.run_until(lambda: not bench.board.moving, within=0.45)
+    bench.check_limits()
+    assert "broke: it has ended" in str(bench.snapshot.link.problem)
+    bench.plug_in(bench.board)
+    connect(bench)
+    bench.run_until(lambda: bench.mode is Mode.IDLE)
+    bench.close()
 
 
 def test_a_stop_waits_behind_no_more_than_the_horizon(bench: CableBench) -> None:
