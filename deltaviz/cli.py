@@ -237,7 +237,7 @@ def _robots(options: argparse.Namespace) -> int:
 
 def _add_ports(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "--list", action="store_true", help="only list them: open none, ask for no board"
+        "--list", action="store_true", help="only list them: open none (which restarts an Arduino)"
     )
     parser.add_argument(
         "--baud", type=_baud, metavar="N", help="baud rate at which to ask (921600)"

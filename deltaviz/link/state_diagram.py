@@ -39,7 +39,7 @@ def mermaid(table: Mapping[tuple[S, E], S], *, first: S, anywhere: str) -> str:
 
 
 def _arrow(start: str, end: str, labels: list[str]) -> str:
-    return f"    {_id(start)} --> {_id(end)}: {', '.join(labels)}"
+    return f"    {_id(start)} --> {_id(end)}: {' / '.join(labels)}"
 
 
 def _shared_by_all(

@@ -97,3 +97,16 @@ def test_the_cable_is_pulled_in_a_move_and_put_in_again(
     assert len(parts) == 3, "one for each time that it was connected"
     for records in parts:
         assert not [event for event in replay_session(records) if event.differs]
+
+
+def test_a_port_that_is_not_there_is_told_in_the_terminal_and_another_can_be_chosen(
+    serve: Callable[..., Any], tmp_path: Path
+) -> None:
+    device = tmp_path / "ttyNone"
+    served = serve("--link", str(device))
+    assert served.process.stdout.readline().startswith(f"deltaviz: There is no {device}.")
+    assert served.state()["link"]["id"] == "ttynone"
+    assert [link["id"] for link in served.get("/api/ports")][:2] == ["sim", "ttynone"]
+    assert served.post("/api/connect", {"link": "nonsense"}) == 422
+    assert served.post("/api/connect", {"link": "sim"}) == 200
+    served.wait(lambda s: s["mode"] == "idle", "the simulated board")

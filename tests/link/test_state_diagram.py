@@ -35,7 +35,7 @@ def test_a_small_table() -> None:
         '    state "any light" as any_light',
         '    state "half-on" as half_on',
         "    [*] --> off",
-        "    any_light --> off: down (not on), fuse",
+        "    any_light --> off: down (not on) / fuse",
         "    off --> half_on: up",
         "    half_on --> on: up",
     ]
