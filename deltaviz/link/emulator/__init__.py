@@ -1,0 +1,1 @@
+"""`emulate://`: the board's real firmware in QEMU, with arms on its pins."""

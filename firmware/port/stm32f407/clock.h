@@ -1,0 +1,24 @@
+/* The processor's clock: brought up once, at the start. */
+#ifndef CLOCK_H
+#define CLOCK_H
+
+#include <stdint.h>
+
+/* What could not be done. The host sees the number behind the board's name. */
+enum clock_error {
+    CLOCK_FINE = 0,
+    CLOCK_NO_CRYSTAL = 1, /* 168 MHz from the internal oscillator, 1 % off at worst */
+    CLOCK_NO_PLL = 2,     /* 16 MHz from the internal oscillator */
+    CLOCK_NO_SWITCH = 3,  /* the same */
+};
+
+struct clock {
+    enum clock_error error;
+    uint32_t serial_hz; /* what USART2 counts (APB1) */
+    uint32_t timer_hz;  /* what TIM2 and TIM3 count */
+    uint32_t tick_hz;   /* as many step ticks a second as this clock allows */
+};
+
+struct clock clock_start(void);
+
+#endif
