@@ -18,14 +18,14 @@ from deltaviz.motion.followed import Array, Followed
 from deltaviz.motion.plan import Plan
 from deltaviz.motion.space import JointSpace
 
-TICK = 5e-6  # s; the board's, so that its segments are as long as planned
+WHOLE_TICKS = 25e-6  # s: at 40 kHz as at 200 kHz, so that segments are as long as planned
 
 
 def brake_plan(space: JointSpace, theta: Array, rate: Array, period: float) -> Plan:
     """The brake from one state as equal segments of about `period` (s)."""
     time = brake_time(rate, space.acceleration)
     count = max(1, round(time / period))
-    time = count * math.floor(time / count / TICK) * TICK
+    time = count * math.floor(time / count / WHOLE_TICKS) * WHOLE_TICKS
     at = np.linspace(0.0, 1.0, count + 1)[:, None]
     along = theta + rate * (time * (at - 0.5 * at * at))
     velocity = rate * (1.0 - at)

@@ -57,8 +57,9 @@ def test_brake_runs_on_the_tangent_within_the_acceleration_limit(robot: Robot) -
 def test_brake_segments_are_such_as_the_board_takes(robot: Robot, speed: float) -> None:
     plan = brake_plan(JointSpace(robot), np.zeros(3), np.array([speed, 0.0, 0.0]), 0.01)
     assert 0.00399 <= plan.segment <= 0.050
-    ticks = plan.segment * 200_000
-    assert ticks == pytest.approx(round(ticks), abs=1e-6)
+    for tick_hz in (200_000, 40_000):  # on silicon, and in the emulator
+        ticks = plan.segment * tick_hz
+        assert ticks == pytest.approx(round(ticks), abs=1e-6)
 
 
 def test_brake_into_a_limit_is_illegal(robot: Robot) -> None:
