@@ -60,7 +60,7 @@ class Session:
         self._epoch = 0
         self._under_way = UnderWay()
         self._ticks = 0  # board time since the first telemetry, unwrapped
-        self._pending: dict[str, float] = {}  # what has to be answered: when to give up
+        self._pending: dict[str, int] = {}  # what has to be answered: in `_ticks`, until when
         self._settled = True  # telemetry has come since the last answer
         self._hello_next = now + HELLO_REPEAT
         self._report_due = float("inf")
@@ -212,7 +212,7 @@ class Session:
     def enable(self, now: float, *, on: bool) -> None:
         if not on:
             self._under_way.disable()
-        self._command(m.Enable(on), now + ANSWER_WITHIN)
+        self._command(m.Enable(on))
 
     def home(self, now: float) -> None:
         """Begin homing, which needs a live lease as any motion does. Not while stopping."""
@@ -223,7 +223,7 @@ class Session:
         self._out.append(m.Home())
 
     def reset(self, now: float) -> None:
-        self._command(m.Reset(), now + ANSWER_WITHIN)
+        self._command(m.Reset())
 
     def tick(self, now: float) -> None:
         """Repeat what has to be repeated, and notice what was never answered."""
@@ -231,9 +231,6 @@ class Session:
             self._out.append(m.Hello(m.PROTOCOL_VERSION))
             self._hello_next = now + HELLO_REPEAT
         self._out += self._under_way.due(now)
-        overdue = [command for command, due in self._pending.items() if now >= due]
-        if overdue:
-            self._fail(News.UNANSWERED, problems.unanswered(overdue[0]))
         self._listen(now)
 
     def _listen(self, now: float) -> None:
@@ -245,6 +242,8 @@ class Session:
                 self._fail(News.STRANGE, strange)
             elif waited >= GREETING_WITHIN:
                 self._fail(News.SILENT, problems.no_answer(self.impression))
+        elif self.phase is Phase.CONFIGURING and now - self._heard >= SILENT_AFTER:
+            self._fail(News.UNANSWERED, problems.unanswered("configure"))
         elif self.phase is Phase.CONFIGURED and now >= self._report_due:
             self._fail(News.UNANSWERED, problems.not_reporting())
         elif self.phase is Phase.READY and now - self._heard >= SILENT_AFTER:
@@ -283,7 +282,7 @@ class Session:
             self._fail(News.UNFIT, problems.other_joints(reply.joints, len(self._scale)))
         else:
             self._learn(News.FITS)
-            self._command(self._configuration, now + ANSWER_WITHIN)
+            self._command(self._configuration)
 
     def _answered(self, command: str) -> None:
         if self._pending.pop(command, None) is not None:
@@ -294,7 +293,7 @@ class Session:
         if digest != self._digest:
             self._fail(News.DIFFERS, problems.other_configuration())
         elif self._learn(News.TAKEN):
-            self._report_due = now + ANSWER_WITHIN
+            self._report_due = now + SILENT_AFTER
 
     def _done(self, command: str) -> None:
         self._answered(command)
@@ -311,6 +310,9 @@ class Session:
             self._fail(News.RESTARTED, problems.restarted())
         else:
             self._learn(News.REPORTED)
+        overdue = [command for command, due in self._pending.items() if self._ticks >= due]
+        if overdue:
+            self._fail(News.UNANSWERED, problems.unanswered(overdue[0]))
         if self.board is not None:
             self._under_way.reported(telemetry, tick_hz=self.board.tick_hz)
 
@@ -331,7 +333,10 @@ class Session:
             problem = problems.set_up_for_another(self._robot_of(self.board.configuration))
         self._fail(News.REFUSED, problem)
 
-    def _command(self, message: m.HostMessage, due: float) -> None:
+    def _command(self, message: m.HostMessage) -> None:
+        """To be answered in the board's own time, however slowly that passes."""
+        tick_hz = 0 if self.board is None else self.board.tick_hz
+        due = self._ticks + round(ANSWER_WITHIN * tick_hz)
         self._pending[type(message).__name__.lower()] = due
         self._out.append(message)
 

@@ -14,7 +14,7 @@ COMMAND_REPEAT: Final = load_description().command_repeat_ms / 1000
 HELLO_REPEAT: Final = 0.5  # a board that is still starting misses the first
 STRANGE_AFTER: Final = 2.0  # of bytes that no board sends
 GREETING_WITHIN: Final = 10.0  # a simulated or emulated board is a process that has to start
-ANSWER_WITHIN: Final = 1.0  # for what the board answers at once
+ANSWER_WITHIN: Final = 1.0  # board time, for what the board answers at once
 SILENT_AFTER: Final = 1.0
 STALE: Final = LEASE_MS / 1000  # telemetry older than this can begin and continue no motion
 STOP_REPEAT: Final = 0.010
@@ -33,10 +33,10 @@ TIMEOUTS: Final = (
     Timeout(HELLO_REPEAT, "Hello, while greeting", "a new Hello is sent"),
     Timeout(STRANGE_AFTER, "opening, if only bytes came that no board sends", "the session fails"),
     Timeout(GREETING_WITHIN, "opening without a HelloReply", "the session fails"),
-    Timeout(ANSWER_WITHIN, "a command but Home, or Configured without telemetry",
+    Timeout(ANSWER_WITHIN, "a command but Home, by the board's clock", "the session fails"),
+    Timeout(SILENT_AFTER, "HelloReply, Configured or the last telemetry, without another",
             "the session fails"),
-    Timeout(SILENT_AFTER, "the last telemetry", "the session fails"),
-    Timeout(STALE, "the last telemetry", "no motion is begun or continued: Stop"),
+    Timeout(STALE, "the last telemetry", "no motion is begun, and none continued until the next"),
     Timeout(STOP_REPEAT, "Stop or EStop, while it is not answered", "it is sent again"),
     Timeout(KEEP_PERIOD, "the last Keep or Segment, while the robot moves", "Keep is sent"),
     Timeout(NEVER_ARMED, "a Stop, by the board's clock",

@@ -13,7 +13,6 @@ from deltaviz.link.configuration import configuration_hash, configure_from
 from deltaviz.link.messages import BoardMessage, HostMessage
 from deltaviz.link.report import LinkReport
 from deltaviz.link.session import Session
-from deltaviz.link.timing import STALE
 from deltaviz.machine import sentences
 from deltaviz.machine.acquaintance import Acquaintance
 from deltaviz.machine.activity import Activity, Kind
@@ -209,8 +208,6 @@ class Core:
             event = reported(session)
             if event is not None:
                 self._board_says(event, session, now)
-        if self.mode in MOVING and self._drive and (session.age(now) or 0.0) >= STALE:
-            self.stop("The board was silent for 150 ms.", now)
 
     def _meet(self, session: Session) -> None:
         if not self._greeted:

@@ -21,7 +21,7 @@ from tests.link.sessions import (
 TICK = 1e-6  # s
 
 # Each rule as the protocol's description states it: not the constants that the code uses.
-HELLO_REPEAT, GREETING, ANSWER, SILENCE = 0.5, 10.0, 1.0, 1.0
+HELLO_REPEAT, GREETING, SILENCE, ANSWER_MS = 0.5, 10.0, 1.0, 1000
 STOP_REPEAT, STALE, NEVER_ARMED_MS = 0.010, 0.150, 100
 
 
@@ -99,14 +99,11 @@ def test_what_is_repeated_is_so_at_its_time_and_not_before(
 
 FAILS = [
     (greeting, GREETING, "No board answered"),
-    (configuring, ANSWER, "'configure'"),
-    (configured, ANSWER, "reported nothing"),
+    (configuring, SILENCE, "'configure'"),
+    (configured, SILENCE, "reported nothing"),
     (ready_session, SILENCE, "silent"),
     (in_epoch, SILENCE, "silent"),
     (stopping, SILENCE, "silent"),
-    (asked("enable", on=True), ANSWER, "'enable'"),
-    (asked("enable", on=False), ANSWER, "'enable'"),
-    (asked("reset"), ANSWER, "'reset'"),
 ]
 
 
@@ -118,6 +115,30 @@ def test_what_never_comes_fails_the_session_at_its_time_and_not_before(
     session.tick(10.0 + after - TICK)
     assert session.phase is not Phase.FAILED
     session.tick(10.0 + after + TICK)
+    assert session.phase is Phase.FAILED
+    assert says in str(session.problem)
+
+
+@pytest.mark.parametrize(
+    ("lead", "says"),
+    [
+        (asked("enable", on=True), "'enable'"),
+        (asked("enable", on=False), "'enable'"),
+        (asked("reset"), "'reset'"),
+    ],
+)
+def test_a_command_has_a_second_of_the_boards_time_to_be_answered(
+    lead: Callable[[], Session], says: str
+) -> None:
+    """Which may pass slowly: an emulated board's does."""
+    session = lead()
+    for ms, now in ((1, 10.9), (2, 11.8), (ANSWER_MS - 1, 12.7)):
+        session.receive(telemetry(now=1000 + ms * MS), now)
+        session.tick(now)
+        assert session.phase is Phase.READY
+    session.receive(telemetry(now=1000 + ANSWER_MS * MS - 1), 13.0)
+    assert session.phase is Phase.READY
+    session.receive(telemetry(now=1000 + ANSWER_MS * MS), 13.0)
     assert session.phase is Phase.FAILED
     assert says in str(session.problem)
 
