@@ -265,6 +265,35 @@ def _ports(options: argparse.Namespace) -> int:
     return OK
 
 
+def _add_emulate(parser: argparse.ArgumentParser) -> None:
+    _add_robot(parser)
+    parser.add_argument(
+        "--port", type=_port, default=0, help="port of this computer to wait at (any free one)"
+    )
+    parser.set_defaults(run=_emulate)
+
+
+def _emulate(options: argparse.Namespace) -> int:
+    from deltaviz.link.transport import LinkError
+    from deltaviz.terminal.emulate import emulate
+
+    robot = _load(options.robot)
+    try:
+        emulate(
+            robot,
+            name=options.robot,
+            port=options.port,
+            out=sys.stdout,
+            commands=sys.stdin,
+        )
+    except LinkError as error:
+        print(f"deltaviz: {error}", file=sys.stderr)
+        return FAILED
+    except KeyboardInterrupt:
+        pass
+    return OK
+
+
 def _add_monitor(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("url", nargs="?", metavar="URL", help="a port to listen on")
     parser.add_argument("--capture", type=Path, metavar="FILE", help="what serve --capture wrote")
@@ -336,5 +365,6 @@ _COMMANDS: dict[str, tuple[Callable[[argparse.ArgumentParser], None], str]] = {
     "fk": (_add_fk, "Tool tip position for joint angles."),
     "robots": (_add_robots, "The robots that come with deltaviz."),
     "ports": (_add_ports, "Serial ports, with what they are, and which of them has a board."),
+    "emulate": (_add_emulate, "The real firmware in QEMU, as a board to connect to."),
     "monitor": (_add_monitor, "What passes on a link, one line a message."),
 }

@@ -118,7 +118,7 @@ def test_bad_usage_is_status_2_with_a_way_out(
 @pytest.mark.parametrize(
     ("link", "says"),
     [
-        ("emulate://", "emulate://"),
+        ("emulate://?homed=1", "disabled and unhomed"),
         ("serial:///dev/ttyUSB0?speed=9600", "speed"),
         ("sim://?home=0", "home"),
         ("nonsense", "sim://"),

@@ -20,7 +20,10 @@ class Link:
     description: str
 
 
-BUILT_IN = (Link("sim", "sim://", "Simulated board"),)
+BUILT_IN = (
+    Link("sim", "sim://", "Simulated board"),
+    Link("emulate", "emulate://", "Emulated board: the real firmware"),
+)
 _RESERVED = tuple(SCHEMES)
 _ID = re.compile(r"[a-z0-9][a-z0-9_-]{0,63}")
 

@@ -6,6 +6,8 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 from urllib.parse import urlsplit
 
+from deltaviz.link.configuration import configure_from
+from deltaviz.link.emulator.transport import EmulatedTransport, check_emulator
 from deltaviz.link.serial_link import open_serial, serial_address
 from deltaviz.link.sim import SimTransport, starts_homed
 from deltaviz.link.tap import Tap, untapped
@@ -32,13 +34,14 @@ def _open_serial(url: str, robot: Robot, tap: Tap) -> Transport:
     return open_serial(url, tap=tap)
 
 
-def _refuse_emulator(url: str, *_: object) -> Transport:
-    raise LinkError("The emulated board (emulate://) is not available yet. Use sim://")
+def _open_emulator(url: str, robot: Robot, tap: Tap) -> Transport:
+    check_emulator(url)
+    return EmulatedTransport.start(configure_from(robot), tap=tap)
 
 
 SCHEMES: dict[str, Scheme] = {
     "sim": Scheme(starts_homed, _open_sim),
-    "emulate": Scheme(_refuse_emulator, _refuse_emulator),
+    "emulate": Scheme(check_emulator, _open_emulator),
 }
 OTHERS = Scheme(serial_address, _open_serial)  # whatever pyserial opens
 

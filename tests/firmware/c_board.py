@@ -162,7 +162,7 @@ class CBoard:
         homed = first and self._start_homed
         per_rad = self._configure.microsteps_per_rad
         ready = [r / m for r, m in zip(self._configure.ready, per_rad, strict=True)]
-        theta = ready if homed else self._theta or power_up_pose(parameters)
+        theta = ready if homed else self._theta or power_up_pose(parameters.configure)
         self.plant = Plant(parameters, theta=theta)
         self._travelled = list(view.travelled[: view.joints])
         if homed:

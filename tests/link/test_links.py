@@ -22,6 +22,9 @@ FOUND = [
 ]
 
 
+BUILT_IN = [("sim", "sim://"), ("emulate", "emulate://")]
+
+
 @pytest.fixture
 def plugged_in(monkeypatch):
     found = list(FOUND)
@@ -40,17 +43,17 @@ def test_ports_have_ids_that_are_safe_in_a_url(plugged_in):
     assert by_device["/dev/ttyUSB1"].description == "Serial port ttyUSB1"
 
 
-def test_the_simulated_board_is_the_first_and_a_plugged_in_port_is_listed(plugged_in):
+def test_the_boards_without_a_port_come_first_and_a_plugged_in_port_is_listed(plugged_in):
     links = Links("sim://").list()
-    assert (links[0].id, links[0].url) == ("sim", "sim://")
-    assert len(links) == 1 + len(FOUND)
+    assert [(link.id, link.url) for link in links[:2]] == BUILT_IN
+    assert len(links) == len(BUILT_IN) + len(FOUND)
     assert Links("sim://").url("ttyusb1") == "/dev/ttyUSB1"
 
 
 def test_a_port_that_was_unplugged_is_no_choice_any_more(plugged_in):
     links = Links("sim://")
     plugged_in.clear()
-    with pytest.raises(LinkError, match=r"no link 'ttyusb1' .*there is: sim\. Plug"):
+    with pytest.raises(LinkError, match=r"no link 'ttyusb1' .*there is: sim, emulate\. Plug"):
         links.url("ttyusb1")
 
 
@@ -59,9 +62,9 @@ def test_what_the_command_line_gave_stays_a_choice_with_its_options(plugged_in):
     links = Links(url)
     assert links.given.id == "ttyusb1"
     assert links.url("ttyusb1") == url
-    assert len(links.list()) == 1 + len(FOUND), "it is not there twice"
+    assert len(links.list()) == len(BUILT_IN) + len(FOUND), "it is not there twice"
     plugged_in.clear()
-    assert [(x.id, x.url) for x in links.list()] == [("sim", "sim://"), ("ttyusb1", url)]
+    assert [(x.id, x.url) for x in links.list()] == [*BUILT_IN, ("ttyusb1", url)]
 
 
 def test_a_port_by_another_name_is_the_same_port(plugged_in, tmp_path: Path):
@@ -71,7 +74,7 @@ def test_a_port_by_another_name_is_the_same_port(plugged_in, tmp_path: Path):
     name.symlink_to(device)
     plugged_in[:] = [SimpleNamespace(device=str(device), description="A board")]
     links = Links(str(name))
-    assert [link.description for link in links.list()] == ["Simulated board", "A board (device)"]
+    assert [link.description for link in links.list()[2:]] == ["A board (device)"]
     assert links.url(links.given.id) == str(name)
 
 

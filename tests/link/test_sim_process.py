@@ -8,9 +8,7 @@ import subprocess
 import sys
 import textwrap
 import time
-from collections.abc import Callable
 from multiprocessing.connection import wait
-from typing import TypeVar
 
 import pytest
 
@@ -18,7 +16,6 @@ from deltaviz import load_robot
 from deltaviz.link.configuration import configuration_hash, configure_from
 from deltaviz.link.messages import (
     Arm,
-    BoardMessage,
     BoardState,
     Configured,
     Hello,
@@ -32,21 +29,7 @@ from deltaviz.link.messages import (
 )
 from deltaviz.link.sim import SimTransport
 from deltaviz.link.sim_process import MOST_AT_ONCE, Pace
-
-M = TypeVar("M", bound=BoardMessage)
-PATIENCE = 20.0  # s, of a loaded machine
-
-
-def hear(link: SimTransport, kind: type[M], when: Callable[[M], object] = bool) -> M:
-    """Waits for a message of `kind` that `when` accepts."""
-    deadline = time.monotonic() + PATIENCE
-    while time.monotonic() < deadline:
-        wait([link.fileno()], 0.5)
-        for message in link.receive():
-            if isinstance(message, kind) and when(message):
-                return message
-        assert not link.closed, link.problem
-    raise AssertionError("the board did not say it")
+from tests.link.hearing import PATIENCE, hear
 
 
 def is_gone(pid: int) -> bool:

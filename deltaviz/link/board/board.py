@@ -198,7 +198,7 @@ class SimulatedBoard:
         ready = [r / m for r, m in zip(configure.ready, configure.microsteps_per_rad, strict=True)]
         robot = ConfiguredBoard(
             parameters,
-            theta=ready if homed else self._theta or power_up_pose(parameters),
+            theta=ready if homed else self._theta or power_up_pose(configure),
             hash_=configuration_hash(configure),
             tick_hz=self._tick_hz,
         )

@@ -11,6 +11,7 @@ from math import radians
 
 from deltaviz.link.board.parameters import Parameters
 from deltaviz.link.configuration import P_UNIT
+from deltaviz.link.messages import Configure
 
 _END_BEYOND = radians(6)  # from the outermost of joint limit and switch to the mechanical end
 _POWER_UP = (0.20, -0.12, 0.08, -0.16)  # rad from the ready pose: where arms were left
@@ -26,18 +27,7 @@ class Plant:
         self._direction = configure.homing_direction
         self._switch = configure.homing_switch
         self._arms = [round(angle * m) for angle, m in zip(theta, per_rad, strict=True)]
-        self._low = [
-            int(min(low / P_UNIT, switch) - _END_BEYOND * m)
-            for low, switch, m in zip(
-                configure.joint_min, configure.homing_switch, per_rad, strict=True
-            )
-        ]
-        self._high = [
-            int(max(high / P_UNIT, switch) + _END_BEYOND * m)
-            for high, switch, m in zip(
-                configure.joint_max, configure.homing_switch, per_rad, strict=True
-            )
-        ]
+        self._ends = mechanical_ends(configure)
         self._per_rad = per_rad
         self._counts: Sequence[int] = (0,) * parameters.joints
         self._forced: dict[int, bool] = {}
@@ -67,15 +57,16 @@ class Plant:
 
     def step(self, counts: Sequence[int]) -> None:
         """The counter went to `counts`; an arm at its mechanical end stays, its steps are lost."""
-        arms, before, low, high = self._arms, self._counts, self._low, self._high
+        arms, before, ends = self._arms, self._counts, self._ends
         if counts == before:
             return
         for joint, count in enumerate(counts):
             arm = arms[joint] + count - before[joint]
-            if arm < low[joint]:
-                arm = low[joint]
-            elif arm > high[joint]:
-                arm = high[joint]
+            low, high = ends[joint]
+            if arm < low:
+                arm = low
+            elif arm > high:
+                arm = high
             arms[joint] = arm
         self._counts = counts
         self.switches = self._read_switches()
@@ -85,9 +76,25 @@ class Plant:
         self._counts = counts
 
 
-def power_up_pose(parameters: Parameters) -> tuple[float, ...]:
+def mechanical_ends(configure: Configure) -> list[tuple[int, int]]:
+    """The lowest and the highest microstep of each arm."""
+    return [
+        (
+            int(min(low / P_UNIT, switch) - _END_BEYOND * m),
+            int(max(high / P_UNIT, switch) + _END_BEYOND * m),
+        )
+        for low, high, switch, m in zip(
+            configure.joint_min,
+            configure.joint_max,
+            configure.homing_switch,
+            configure.microsteps_per_rad,
+            strict=True,
+        )
+    ]
+
+
+def power_up_pose(configure: Configure) -> tuple[float, ...]:
     """Where the arms of a robot that was just switched on hang: inside the joint limits."""
-    configure = parameters.configure
     return tuple(
         min(max(ready / m + away, low / P_UNIT / m), high / P_UNIT / m)
         for ready, away, low, high, m in zip(

@@ -1,0 +1,82 @@
+"""What left the pins: QEMU's trace of every write to a register, reduced on the fly.
+
+It shares nothing with the firmware, nor with what the host believes: where the pins are is taken
+from the wiring (docs/hardware.md), and time is counted in interrupts of the tick's timer.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import struct
+import subprocess
+import sys
+from tempfile import TemporaryFile
+
+STEP_PINS = 8  # PE8 to PE11: STEP of joints 1 to 4; PE12 to PE15: their DIR
+_TIMER_FLAG = b"40000010"  # TIM2_SR, cleared once in each interrupt
+_PINS = b"40021018"  # GPIOE_BSRR
+_CHANGE = struct.Struct("<QB")
+_AT_ONCE = 1 << 16  # bytes
+_WRITE = re.compile(b"addr 0x(" + _TIMER_FLAG + b"|" + _PINS + b") value 0x([0-9a-f]+) ")
+
+
+class Reduction:
+    """Bytes of the trace in; `changes` are (tick, levels of PE8 to PE15), whenever those differ
+    from before. A tick is the number of timer interrupts since the start.
+    """
+
+    def __init__(self) -> None:
+        self.tick = 0
+        self._levels = 0
+        self._partial = b""
+
+    def feed(self, data: bytes) -> list[tuple[int, int]]:
+        """The changes in `data`."""
+        whole, end, self._partial = (self._partial + data).rpartition(b"\n")
+        changes: list[tuple[int, int]] = []
+        for address, value in _WRITE.findall(whole + end):
+            if address == _TIMER_FLAG:
+                self.tick += 1
+                continue
+            bits = int(value, 16)
+            levels = (self._levels & ~(bits >> 16 + STEP_PINS) | bits >> STEP_PINS) & 0xFF
+            if levels != self._levels:
+                self._levels = levels
+                changes.append((self.tick, levels))
+        return changes
+
+
+class PinTrace:
+    """A process of its own reads the trace, so that nobody waits for it."""
+
+    def __init__(self) -> None:
+        read, self.descriptor = os.pipe()  # `descriptor` is for QEMU
+        self._reduced = TemporaryFile()  # noqa: SIM115
+        command = [sys.executable, "-m", "tests.emulator.pin_trace"]
+        self._reader = subprocess.Popen(command, stdin=read, stdout=self._reduced)
+        os.close(read)
+
+    def started(self) -> None:
+        """QEMU has its end: ours is closed, so that reading ends when QEMU does."""
+        os.close(self.descriptor)
+
+    def finish(self) -> tuple[list[tuple[int, int]], int]:
+        """After QEMU has ended: all changes, and the last tick."""
+        assert self._reader.wait() == 0
+        self._reduced.seek(0)
+        *changes, (last, _) = _CHANGE.iter_unpack(self._reduced.read())
+        self._reduced.close()
+        return changes, last
+
+
+def main() -> None:
+    reduction = Reduction()
+    while data := os.read(0, _AT_ONCE):
+        changes = reduction.feed(data)
+        sys.stdout.buffer.write(b"".join(_CHANGE.pack(*change) for change in changes))
+    sys.stdout.buffer.write(_CHANGE.pack(reduction.tick, 0))
+
+
+if __name__ == "__main__":
+    main()
