@@ -127,6 +127,32 @@ def capture_format() -> str:
     return f"{text}\n\nThis is format {records.FORMAT}."
 
 
+def boards() -> str:
+    import board_tables
+
+    return board_tables.boards()
+
+
+def pins() -> str:
+    import board_tables
+
+    return board_tables.pins()
+
+
+def step_timing() -> str:
+    import board_tables
+
+    return board_tables.step_timing()
+
+
+def firmware() -> str:
+    """Builds it and runs it, so that it takes some seconds."""
+    sys.path.insert(0, str(DOCS.parent))  # for what the tests measure with
+    import firmware_tables
+
+    return firmware_tables.measured()
+
+
 _EXAMPLE = (
     "Hello", "HelloReply", "Configure", "Configured", "Telemetry", "Enable", "Done", "Arm",
     "Segment", "Keep", "Stop", "Stopped", "Refused",
@@ -147,6 +173,10 @@ BLOCKS: dict[str, Callable[[], str]] = {
     "host-timing": host_timing,
     "link-problems": link_problems,
     "capture-format": capture_format,
+    "boards": boards,
+    "pins": pins,
+    "step-timing": step_timing,
+    "firmware": firmware,
 }
 
 
