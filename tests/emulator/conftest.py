@@ -22,11 +22,17 @@ STEP, RAMP = 0.01, 0.1  # s
 
 @pytest.fixture(scope="session")
 def robot() -> Robot:
-    """The stm32 preset, which homes in two seconds rather than ten."""
+    """The stm32 preset, which homes in two seconds rather than ten, and has one motor reversed."""
     robot = load_robot("stm32")
     warm_up(robot)
-    quick = replace(robot.homing, fast=radians(90.0), slow=radians(5.0), backoff=radians(1.0))
-    return replace(robot, homing=quick)
+    quick = replace(
+        robot.homing,
+        fast=(radians(90.0),) * 3,
+        slow=(radians(5.0),) * 3,
+        backoff=(radians(1.0),) * 3,
+    )
+    drive = replace(robot.drive, invert=(False, True, False))
+    return replace(robot, homing=quick, drive=drive)
 
 
 @pytest.fixture

@@ -105,6 +105,10 @@ class Processor:
         self._run(entry, NOWHERE)
         return self._uc.reg_read(UC_ARM_REG_R0)
 
+    def run_for(self, entry: int, *, instructions: int) -> None:
+        """From an address, for what does not end by itself."""
+        self._uc.emu_start(entry | 1, NOWHERE, count=instructions)
+
     def cost(self, function: str | int, *arguments: int) -> Cost:
         """Of a call, from its first instruction to its last."""
         with self._meter:
