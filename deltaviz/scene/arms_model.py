@@ -49,6 +49,8 @@ class ArmsModel(ABC):
         self._ghost.root.visible = False
         self._add_ghost()
         self._add_labels()
+        ready = robot.homing.ready  # whole, until a pose is reported
+        self.show(ready, tuple(robot.forward(ready).tolist()))
 
     @abstractmethod
     def _add_base(self) -> None:

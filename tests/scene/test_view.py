@@ -182,6 +182,17 @@ def test_an_unknown_pose_is_shown_as_a_shade(stand: Any) -> None:
     stand.eventually(lambda: beam.opacity is None)
 
 
+def test_a_robot_that_never_told_its_pose_is_whole(own_stand: Any, other_robot: Robot) -> None:
+    """At its ready pose: arms, rods and effector hang together."""
+    own_stand.machine.snapshot = dataclasses.replace(
+        own_stand.machine.snapshot, xyz=None, theta=None, target_theta=None, target_xyz=None
+    )
+    own_stand.machine.robot = other_robot
+    own_stand.eventually(lambda: own_stand.scene._robot is other_robot)
+    ready = other_robot.forward(other_robot.homing.ready) - other_robot.tool_offset
+    assert drawn_tip(own_stand) == pytest.approx(ready)
+
+
 def test_a_joint_at_its_limit_is_red(stand: Any) -> None:
     hubs = [stand.server.scene.get_handle_by_name(f"/robot/arm{i}/hub") for i in range(3)]
     stand.machine.be_at((0.0, 0.0, -330.0), margins=(1.0, 0.15, 0.0))
