@@ -91,6 +91,7 @@ export class JogPad {
   #frames = byId("frames", HTMLElement).querySelectorAll("button");
   #steps = byId("steps", HTMLElement).querySelectorAll("button");
   #toolKeys = byId("tool-keys", HTMLElement);
+  #depthKeys = byId("depth-keys", HTMLElement);
   #store;
   #hands;
   #choice;
@@ -139,6 +140,7 @@ export class JogPad {
     const joints = robot?.joints ?? state?.theta_deg?.length ?? 3;
     this.#build(frame, robot, joints);
     this.#toolKeys.hidden = !robot?.toolAxis;
+    setText(this.#depthKeys, robot?.planar ? "Z, up and down" : "Y, or away and near");
     const unhomed = frame !== this.#choice.chosen;
     for (const button of this.#frames) button.disabled = unhomed && button.dataset["frame"] !== frame;
     markPressed(this.#frames, (b) => b.dataset["frame"] === frame);

@@ -2,7 +2,7 @@
 
 import { get, post } from "./api.js";
 import { Connection } from "./connection.js";
-import { byId, onPress, setText } from "./dom.js";
+import { byId, make, onPress } from "./dom.js";
 import { SceneFrame } from "./frame.js";
 import { Hands } from "./hands.js";
 import { JogChoice } from "./jog-choice.js";
@@ -30,6 +30,12 @@ import { ViserPanel } from "./viser-panel.js";
 
 /** How often the page looks whether its numbers have grown old. */
 const WATCH_MS = 250;
+
+const THEMES = {
+  auto: { sign: "◐", name: "Auto" },
+  light: { sign: "○", name: "Light" },
+  dark: { sign: "●", name: "Dark" },
+};
 
 const store = new Store();
 const notices = new Notices(() => store.changed());
@@ -154,7 +160,8 @@ async function loadRobot() {
 }
 
 function themeChanged() {
-  setText(themeButton, { auto: "◐ Auto", light: "○ Light", dark: "● Dark" }[theme.theme]);
+  const { sign, name } = THEMES[theme.theme];
+  themeButton.replaceChildren(sign, make("span", { class: "wide" }, ` ${name}`));
   themeButton.setAttribute("aria-label", `Theme: ${theme.theme}`);
   themeButton.title = "Theme: as the system has it, light, or dark";
   tellTheme();
