@@ -9,6 +9,7 @@ import os
 import platform
 import subprocess
 import sys
+from collections.abc import Iterator
 from datetime import date
 from pathlib import Path
 
@@ -19,9 +20,14 @@ BENCHMARKS = {
     "follower": ("One tick of the follower", ["--ticks", "200"]),
     "loop": ("The control loop, alone and on busy cores", ["--seconds", "5"]),
     "watched_loop": ("The control loop while browsers watch", ["--seconds", "5"]),
+    "dragged": ("The link while browsers watch and one drags", ["--seconds", "10"]),
     "link": ("The link: round trip, and the cost of a capture", ["--seconds", "5"]),
     "latency": ("Pointer to step", ["--moves", "10"]),
 }
+HEAD = """# Measurements
+
+Made by `python -m benchmarks`, or `python -m benchmarks NAME` for one of them. Browsers draw in
+software there and share the cores with everything else."""
 
 
 def processor() -> str:
@@ -33,16 +39,10 @@ def processor() -> str:
 
 
 def main() -> int:
-    chosen = sys.argv[1:] or list(BENCHMARKS)
-    parts = [
-        "# Measurements",
-        "",
-        f"Made by `python -m benchmarks` on {date.today()}: {os.cpu_count()} cores "
-        f"({processor()}), Python {platform.python_version()}, no graphics card. Browsers draw in "
-        "software there and share the cores with everything else.",
-    ]
+    """Measure what is named, or all; sections that are not measured stay as they are."""
+    sections = dict(read(PAGE.read_text())) if PAGE.exists() else {}
     failed = False
-    for name in chosen:
+    for name in sys.argv[1:] or BENCHMARKS:
         title, arguments = BENCHMARKS[name]
         command = [sys.executable, "-m", f"benchmarks.{name}", *arguments]
         done = subprocess.run(command, stdout=subprocess.PIPE, text=True, cwd=PAGE.parents[1])
@@ -51,9 +51,29 @@ def main() -> int:
             failed = True
             continue
         print(done.stdout)
-        parts += ["", f"## {title}", "", "```text", done.stdout.strip("\n"), "```"]
-        PAGE.write_text("\n".join(parts) + "\n")
+        sections[title] = f"{circumstances()}\n\n```text\n{done.stdout.strip(chr(10))}\n```"
+        PAGE.write_text(page(sections))
     return 1 if failed else 0
+
+
+def circumstances() -> str:
+    return (
+        f"{date.today()}, {os.cpu_count()} cores ({processor()}), "
+        f"Python {platform.python_version()}, no graphics card."
+    )
+
+
+def read(text: str) -> Iterator[tuple[str, str]]:
+    """Titles and texts of a page's sections."""
+    for section in text.split("\n## ")[1:]:
+        title, _, body = section.partition("\n")
+        yield title, body.strip("\n")
+
+
+def page(sections: dict[str, str]) -> str:
+    """In the order of the benchmarks, whichever were measured last."""
+    titles = [title for title, _ in BENCHMARKS.values() if title in sections]
+    return "\n\n".join([HEAD, *(f"## {title}\n\n{sections[title]}" for title in titles)]) + "\n"
 
 
 if __name__ == "__main__":

@@ -18,13 +18,14 @@ from dataclasses import dataclass, field
 
 from playwright.sync_api import Page
 
+from benchmarks.hand import Hand
 from benchmarks.served import Served, chromium, open_console, served
 from deltaviz.machine.intent import Answer, DragTo, Intent
 from deltaviz.machine.snapshot import Snapshot
 
 PATIENCE = 30.0  # s
+PER_MOVE = 10.0  # s
 STEP = 24.0  # pixels
-PANEL = 288  # pixels of viser's panel, left of the robot
 
 STAMP = """() => {
     const frame = document.querySelector("#scene").contentWindow;
@@ -71,12 +72,15 @@ class Witness:
         raise SystemExit("the robot does not come to rest")
 
 
-def one_move(page: Page, witness: Witness, x: float, y: float) -> tuple[float, float, float] | None:
+def one_move(
+    page: Page, hand: Hand, witness: Witness, dx: float
+) -> tuple[float, float, float] | None:
     """Stages of one move, s: to the scene, to the command, to the first step. None: no step."""
+    hand.hold()
     before = witness.rest()
     witness.drags.clear()
     to_monotonic = time.monotonic() - time.time()
-    page.mouse.move(x, y)
+    hand.move(dx, 0.0)
     after = witness.rest()
     if after.counts == before.counts or not witness.drags:
         return None
@@ -85,21 +89,6 @@ def one_move(page: Page, witness: Witness, x: float, y: float) -> tuple[float, f
     commanded = next(s.at for s in since if s.command_xyz != before.command_xyz)
     stepped = next(s.at for s in since if s.counts != before.counts)
     return witness.drags[0] - moved, commanded - witness.drags[0], stepped - commanded
-
-
-def effector(page: Page, running: Served) -> tuple[float, float]:
-    """Grabs the drag handle: presses down the robot's axis until one starts a drag."""
-    box = page.locator("#scene").bounding_box()
-    assert box is not None
-    x = box["x"] + (box["width"] + PANEL) / 2
-    for y in range(int(box["y"] + box["height"]) - 40, int(box["y"]), -12):
-        page.mouse.move(x, y)
-        page.mouse.down()
-        page.wait_for_timeout(100)
-        if running.machine.snapshot.holder is not None:
-            return x, y
-        page.mouse.up()
-    raise SystemExit("no drag handle found")
 
 
 def report(stages: list[tuple[float, float, float]]) -> None:
@@ -130,15 +119,17 @@ def main() -> None:
     with served() as running, chromium() as browser:
         page = open_console(browser, running.url)
         witness = Witness(running)
-        x, y = effector(page, running)
         witness.watch()
         page.evaluate(STAMP)
         stages: list[tuple[float, float, float]] = []
-        for number in range(moves):
-            one = one_move(page, witness, x + (STEP if number % 2 == 0 else 0.0), y)
-            if one is not None:
-                stages.append(one)
-        page.mouse.up()
+        end = time.monotonic() + PATIENCE + moves * PER_MOVE
+        with Hand(page, running) as hand:
+            while len(stages) < moves:
+                if time.monotonic() > end:
+                    raise SystemExit("the drags do not move the robot")
+                one = one_move(page, hand, witness, 0.0 if len(stages) % 2 else STEP)
+                if one is not None:
+                    stages.append(one)
         witness.ended.set()
     report(stages)
 

@@ -7,6 +7,7 @@ import contextlib
 import threading
 from collections.abc import Iterator
 from dataclasses import dataclass
+from pathlib import Path
 
 from playwright.sync_api import Browser, Page, sync_playwright
 
@@ -32,7 +33,9 @@ class Served:
 
 
 @contextlib.contextmanager
-def served(robot: str = "stm32") -> Iterator[Served]:
+def served(
+    robot: str = "stm32", *, link: str = "sim://", capture: Path | None = None
+) -> Iterator[Served]:
     """Machine, scene and web server, as `deltaviz serve` puts them together."""
     from deltaviz.scene.view import Scene
     from deltaviz.web.app import create_app
@@ -41,7 +44,10 @@ def served(robot: str = "stm32") -> Iterator[Served]:
     from deltaviz.web.server import Server
     from deltaviz.web.static_files import static_dir
 
-    with MachineClient.start(robot=robot) as machine, listen("127.0.0.1", 0) as listener:
+    with (
+        MachineClient.start(robot=robot, link=link, capture=capture) as machine,
+        listen("127.0.0.1", 0) as listener,
+    ):
         machine.ready(60)
         scene = Scene(machine)
         scene.start()
@@ -74,10 +80,10 @@ def chromium() -> Iterator[Browser]:
         browser.close()
 
 
-def open_console(browser: Browser, url: str) -> Page:
-    """A page of its own session, once it shows the robot and viser's panel."""
-    page = browser.new_context(viewport={"width": 1280, "height": 800}).new_page()
+def open_console(browser: Browser, url: str, *, width: int = 1280, height: int = 800) -> Page:
+    """A page of its own session, once it has a picture."""
+    page = browser.new_context(viewport={"width": width, "height": height}).new_page()
     page.goto(url)
     page.locator("#mode", has_text="Idle").wait_for(timeout=LONG)
-    page.frame_locator("#scene").get_by_role("slider").first.wait_for(timeout=LONG)
+    page.frame_locator("#scene").locator("canvas").first.wait_for(timeout=LONG)
     return page
