@@ -2,9 +2,10 @@
 
     python benchmarks/kinematics.py [--poses N] [--rounds N]
 
-Prints ns per pose of the public (n, 3) call, of the compiled kernel, and of the C code, each
-measured in turn in every round, so that other load hits all alike; medians over the rounds, and
-the ratios to C of the same round. Also the time of one pose alone, as the control loop has it.
+Prints ns per pose of copying the data, of the C code, of the compiled loop over separate x, y, z
+arrays, and of the public (n, 3) call, on one thread and on two; each measured in turn in every
+round, the least of all rounds: other load only adds. Also the time of one pose alone, as the
+control loop has it.
 """
 
 from __future__ import annotations
@@ -17,13 +18,15 @@ import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from deltaviz import load_robot
+from deltaviz.mechanism import RotaryDelta
 
 SIDES = np.array([457.3, 115.0, 112.0, 232.0])  # f, e, upper arm, forearm of the preset trossen
-Run = Callable[[], np.ndarray]
+Run = Callable[[], object]
 
 
 class Tutorial:
@@ -56,30 +59,44 @@ def main() -> None:
     options.add_argument("--rounds", type=int, default=7)
     chosen = options.parse_args()
     robot = load_robot("trossen")
-    kernel = robot.kernel
+    mechanism, kernel = robot.mechanism, robot.kernel
+    assert isinstance(mechanism, RotaryDelta)
     kernel.warm_up()
     theta = _legal_angles(chosen.poses)
     xyz = kernel.forward(theta)
     theta_deg = np.degrees(theta)
+    batch = mechanism.batch
     with tempfile.TemporaryDirectory() as folder:
         tutorial = Tutorial(Path(folder))
-        ways: dict[str, dict[str, Run]] = {
-            "inverse": {
-                "public": lambda: robot.mechanism.inverse(xyz),
-                "kernel": lambda: kernel.inverse(xyz),
-                "C": lambda: tutorial.inverse(xyz),
-            },
-            "forward": {
-                "public": lambda: robot.mechanism.forward(theta),
-                "kernel": lambda: kernel.forward(theta),
-                "C": lambda: tutorial.forward(theta_deg),
-            },
-        }
-        for name, runs in ways.items():
+        for name, into, back, rows, in_c in (
+            ("inverse", xyz, theta, batch.inverse_rows, lambda: tutorial.inverse(xyz)),
+            ("forward", theta, xyz, batch.forward_rows, lambda: tutorial.forward(theta_deg)),
+        ):
+            public, apart = getattr(mechanism, name), getattr(batch, name)
+            runs = _ways(public, apart, rows, into, in_c)
             _compare(name, runs, chosen.poses, chosen.rounds)
-            apart = np.abs(runs["public"]() - runs["kernel"]()).max()
-            print(f"  public and kernel differ by at most {apart:.1e}")
-    _one_pose(robot.mechanism, kernel, xyz[:1], theta[:1])
+            print(f"  public: at most {np.abs(public(into) - back).max():.1e} from the other way's")
+    _one_pose(mechanism, kernel, xyz[:1], theta[:1])
+
+
+def _ways(
+    public: Callable[..., Any],
+    apart: Callable[..., Any],
+    rows: Callable[..., Any],
+    into: np.ndarray,
+    in_c: Run,
+) -> dict[str, Run]:
+    """Each way to solve the same poses; the arrays written to exist already, but for the rows'."""
+    separate = tuple(np.ascontiguousarray(into[:, i]) for i in range(3))
+    out = tuple(np.zeros_like(column) for column in separate)
+    return {
+        "copy": lambda: [np.copyto(o, s) for o, s in zip(out, separate, strict=True)],
+        "C": in_c,
+        "arrays": lambda: apart(*separate, out=out),
+        "arrays, two threads": lambda: apart(*separate, out=out, threads=2),
+        "public rows": lambda: public(into),
+        "rows, two threads": lambda: rows(into, threads=2),
+    }
 
 
 def _legal_angles(count: int) -> np.ndarray:
@@ -101,10 +118,13 @@ def _compare(name: str, runs: dict[str, Run], poses: int, rounds: int) -> None:
             start = time.perf_counter()
             run()
             taken[way].append((time.perf_counter() - start) / poses * 1e9)
-    print(f"{name}, {poses} poses, medians of {rounds} rounds")
-    for way, times in taken.items():
-        ratio = statistics.median(t / c for t, c in zip(times, taken["C"], strict=True))
-        print(f"  {way:8} {statistics.median(times):7.1f} ns/pose   {ratio:5.2f} of C")
+    least = {way: min(times) for way, times in taken.items()}
+    print(f"{name}, {poses} poses, least of {rounds} rounds")
+    for way, time_taken in least.items():
+        print(
+            f"  {way:20} {time_taken:7.1f} ns/pose {time_taken / least['copy']:6.1f} times a copy"
+            f" {least['C'] / time_taken:6.1f} times as fast as C"
+        )
 
 
 def _one_pose(mechanism: object, kernel: object, xyz: np.ndarray, theta: np.ndarray) -> None:

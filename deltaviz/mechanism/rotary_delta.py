@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,8 +20,12 @@ from deltaviz.mechanism.margin import Margin, MarginKind
 from deltaviz.mechanism.stiffness import TYPE_1_RESERVE, TYPE_2_RESERVE, stiffness, unit
 from deltaviz.mechanism.vectors import cross, cross_rows, dot, minus
 
+if TYPE_CHECKING:
+    from deltaviz.mechanism.rotary_delta_batch import RotaryDeltaBatch
+
 MEET_ROUNDING = 16 * EPS  # of P's squared height over three elbows at right angles, in l²
 UNDETERMINED = 1e-12  # elbow centres whose triangle is smaller than this, in squared forearms
+MANY = 250_000  # poses from which the compiled loop is worth its second of importing numba
 LEAST_SEPARATION = math.radians(1.0)  # of two arms' azimuths
 
 
@@ -111,6 +115,13 @@ class RotaryDelta:
         )
 
     @cached_property
+    def batch(self) -> RotaryDeltaBatch:
+        """`inverse` and `forward` compiled for very many poses; the first use imports numba."""
+        from deltaviz.mechanism.rotary_delta_batch import RotaryDeltaBatch
+
+        return RotaryDeltaBatch(self)
+
+    @cached_property
     def handedness(self) -> float:
         """+1 if the arms stand counter-clockwise in their order, else -1."""
         a, b, c = (arm.azimuth for arm in self.arms)
@@ -122,7 +133,10 @@ class RotaryDelta:
         A row is NaN where any arm cannot reach. At the very edge of reach, where rounding
         decides, the edge's own angle is returned; it is determined only to about 3e-8 rad.
         """
-        return in_blocks(self._solve, rows(xyz, 3, "xyz"))
+        points = rows(xyz, 3, "xyz")
+        if points.size >= 3 * MANY:
+            return self.batch.inverse_rows(points)
+        return in_blocks(self._solve, points)
 
     def nearest_angles(self, xyz: ArrayLike) -> Array:
         """As `inverse`, but an arm that cannot reach gets the angle that comes nearest."""
@@ -136,7 +150,10 @@ class RotaryDelta:
         solutions the working one (det Jx < 0 with arms counter-clockwise: below the elbows).
         A row is NaN where the forearms cannot meet, or would meet in more than two points.
         """
-        return in_blocks(lambda block: self._meet(self.elbows(block)), rows(theta, 3, "theta"))
+        angles = rows(theta, 3, "theta")
+        if angles.size >= 3 * MANY:
+            return self.batch.forward_rows(angles)
+        return in_blocks(lambda block: self._meet(self.elbows(block)), angles)
 
     @np.errstate(all="ignore")
     def jacobian(self, theta: ArrayLike) -> Array:

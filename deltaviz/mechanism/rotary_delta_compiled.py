@@ -4,10 +4,8 @@ All compiled functions stand in this one file and take every number as an argume
 numba's cache notices changes of the file that a function stands in, and of no other: neither of
 functions that it calls nor of constants that it imports.
 
-`g` has 5 rows of 5: for each arm (offset, upper_arm, forearm, cos, sin of its azimuth), then
-(tool offset x, y, z, handedness, 0), then the tolerances (`EDGE` and so on). `limits` is a row of
-numbers, see `TYPE_1_SCALE` and so on. The formulas are those of `arm`, `rotary_delta` and
-`stiffness`; tests hold them together.
+`g` is made by `rotary_delta_numbers`. `limits` is a row of numbers, see `TYPE_1_SCALE` and so on.
+The formulas are those of `arm`, `rotary_delta` and `stiffness`; tests hold them together.
 """
 
 from __future__ import annotations
@@ -19,10 +17,7 @@ import numpy as np
 from deltaviz.mechanism.arrays import Array
 from deltaviz.mechanism.compiled import compiled
 
-# Columns of the last row of `g`.
-EDGE = 0
-MEET = 1
-UNDETERMINED = 2
+# Columns of the last row of `g`; `rotary_delta_batch_compiled` has the others.
 TINY = 3
 LEAST_RHO = 4
 
@@ -74,43 +69,6 @@ def _cross(ax: float, ay: float, az: float, bx: float, by: float, bz: float) -> 
 
 
 @compiled
-def _elbow(theta: float, g: Array, i: int) -> Vector:
-    radius = g[i, 0] + g[i, 1] * math.cos(theta)
-    return radius * g[i, 3], radius * g[i, 4], -g[i, 1] * math.sin(theta)
-
-
-@compiled
-def _meet(t0: float, t1: float, t2: float, g: Array) -> Vector:
-    dx, dy, dz = _elbow(t0, g, 0)
-    ax, ay, az = _elbow(t1, g, 1)
-    bx, by, bz = _elbow(t2, g, 2)
-    ax, ay, az = ax - dx, ay - dy, az - dz
-    bx, by, bz = bx - dx, by - dy, bz - dz
-    nx, ny, nz = _cross(ax, ay, az, bx, by, bz)
-    square = nx * nx + ny * ny + nz * nz
-    l1, l2, l3 = g[0, 2] * g[0, 2], g[1, 2] * g[1, 2], g[2, 2] * g[2, 2]
-    if not square > (g[4, UNDETERMINED] * l1) ** 2:
-        return math.nan, math.nan, math.nan
-    along_a = (ax * ax + ay * ay + az * az + (l1 - l2)) / (2.0 * square)
-    along_b = (bx * bx + by * by + bz * bz + (l1 - l3)) / (2.0 * square)
-    ux, uy, uz = _cross(bx, by, bz, nx, ny, nz)
-    vx, vy, vz = _cross(nx, ny, nz, ax, ay, az)
-    wx, wy, wz = (
-        along_a * ux + along_b * vx,
-        along_a * uy + along_b * vy,
-        along_a * uz + along_b * vz,
-    )
-    height = l1 - (wx * wx + wy * wy + wz * wz)
-    if height < 0.0:
-        size = (ax * ax + ay * ay + az * az) * (bx * bx + by * by + bz * bz)
-        if height < -g[4, MEET] * l1 * size / square:
-            return math.nan, math.nan, math.nan
-        height = 0.0
-    h = g[3, 3] * math.sqrt(height / square)
-    return dx + wx - nx * h, dy + wy - ny * h, dz + wz - nz * h
-
-
-@compiled
 def _stiffness(a: Array, b: Array, c: Array, tiny: float) -> float:
     px, py, pz = _cross(b[0], b[1], b[2], c[0], c[1], c[2])
     qx, qy, qz = _cross(c[0], c[1], c[2], a[0], a[1], a[2])
@@ -132,82 +90,6 @@ def _type_1(x: float, y: float, z: float, g: Array, i: int, jq: float) -> float:
     k = (p * p + v * v + z * z + (upper * upper - g[i, 2] * g[i, 2])) / (2.0 * upper)
     value = 1.0 - k * k / max(p * p + z * z, (g[4, LEAST_RHO] * upper) ** 2)
     return value if jq >= 0.0 else -abs(value)
-
-
-@compiled
-def _atan2(y: float, x: float) -> float:
-    """Without branches or calls, so that the loop over it becomes vector instructions.
-
-    Cephes' rational approximation of the arctangent, to 2e-16 relative; (0, 0) gives 0.
-    """
-    width, height = abs(x), abs(y)
-    longer, shorter = max(width, height), min(width, height)
-    beyond = shorter > 0.66 * longer  # nearer to 45 degrees than to an axis
-    rise = shorter - longer if beyond else shorter
-    run = shorter + longer if beyond else longer
-    t = rise / (run if run > 0.0 else 1.0)
-    s = t * t
-    upper = -8.750608600031904122785e-1 * s - 1.615753718733365076637e1
-    upper = (upper * s - 7.500855792314704667340e1) * s - 1.228866684490136173410e2
-    upper = upper * s - 6.485021904942025371773e1
-    lower = (s + 2.485846490142306297962e1) * s + 1.650270098316988542046e2
-    lower = (lower * s + 4.328810604912902668951e2) * s + 4.853903996359136964868e2
-    lower = lower * s + 1.945506571482613964425e2
-    angle = t + t * s * upper / lower
-    angle = angle + 0.25 * math.pi if beyond else angle
-    angle = 0.5 * math.pi - angle if height > width else angle
-    angle = math.pi - angle if x < 0.0 else angle
-    return -angle if y < 0.0 else angle
-
-
-@compiled
-def _angles_of_arm(point: Array, angle: Array, size: int, g: Array, i: int) -> None:
-    offset, upper, cos, sin = g[i, 0], g[i, 1], g[i, 3], g[i, 4]
-    difference = upper * upper - g[i, 2] * g[i, 2]
-    total = upper * upper + g[i, 2] * g[i, 2]
-    tolerance = g[4, EDGE] / upper
-    for k in range(size):
-        x, y, z = point[0, k], point[1, k], point[2, k]
-        p = x * cos + y * sin - offset
-        v = y * cos - x * sin
-        square = p * p + v * v + z * z
-        m = (square + difference) / (2.0 * upper)
-        root = p * p + z * z - m * m
-        missed = root < -tolerance * abs(m) * (square + total)
-        q = math.sqrt(root if root > 0.0 else 0.0)
-        theta = _atan2(-z * m - p * q, p * m - z * q)
-        angle[k] = math.nan if missed else theta
-
-
-@compiled
-def inverse(xyz: Array, g: Array) -> Array:
-    """Each arm's angle, in blocks that stay in the nearest cache."""
-    count = xyz.shape[0]
-    out = np.empty((count, 3))
-    size = min(count, 128)
-    point, angle = np.empty((3, size)), np.empty((3, size))
-    for start in range(0, count, 128):
-        size = min(128, count - start)
-        for k in range(size):
-            for axis in range(3):
-                point[axis, k] = xyz[start + k, axis] - g[3, axis]
-        for i in range(3):
-            _angles_of_arm(point, angle[i], size, g, i)
-        for k in range(size):
-            a, b, c = angle[0, k], angle[1, k], angle[2, k]
-            spoilt = (a + b + c) * 0.0
-            row = start + k
-            out[row, 0], out[row, 1], out[row, 2] = a + spoilt, b + spoilt, c + spoilt
-    return out
-
-
-@compiled
-def forward(theta: Array, g: Array) -> Array:
-    out = np.empty((theta.shape[0], 3))
-    for k in range(theta.shape[0]):
-        x, y, z = _meet(theta[k, 0], theta[k, 1], theta[k, 2], g)
-        out[k, 0], out[k, 1], out[k, 2] = x + g[3, 0], y + g[3, 1], z + g[3, 2]
-    return out
 
 
 @compiled

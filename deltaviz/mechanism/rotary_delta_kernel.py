@@ -6,28 +6,29 @@ import math
 
 import numpy as np
 
-from deltaviz.mechanism import arm as arm_module
-from deltaviz.mechanism import rotary_delta, stiffness
+from deltaviz.mechanism import rotary_delta_batch_compiled as batch
 from deltaviz.mechanism import rotary_delta_compiled as compiled
+from deltaviz.mechanism import stiffness
 from deltaviz.mechanism.arrays import Array
 from deltaviz.mechanism.bounds import ROUNDING, Bounds
 from deltaviz.mechanism.rotary_delta import RotaryDelta
+from deltaviz.mechanism.rotary_delta_numbers import geometry
 
 
 class RotaryDeltaKernel:
     """See `Kernel`."""
 
     def __init__(self, mechanism: RotaryDelta, bounds: Bounds) -> None:
-        self._g = _geometry(mechanism, bounds)
+        self._g = geometry(mechanism, bounds.tool_offset)
         self._limits = _limits(mechanism, bounds)
         boxes = sum(2 for box in (bounds.z, bounds.x, bounds.y) if box is not None)
         self._columns = 14 + boxes + (bounds.radius is not None)
 
     def inverse(self, xyz: Array) -> Array:
-        return compiled.inverse(xyz, self._g)
+        return batch.inverse(xyz, self._g)
 
     def forward(self, theta: Array) -> Array:
-        return compiled.forward(theta, self._g)
+        return batch.forward(theta, self._g)
 
     def margins(self, xyz: Array, theta: Array) -> Array:
         return compiled.margins(xyz, theta, self._g, self._limits, self._columns)
@@ -43,19 +44,6 @@ class RotaryDeltaKernel:
         xyz = self.forward(theta)
         self.margins(xyz, self.inverse(xyz))
         self.tip_velocity(xyz, theta, self.joint_velocity(xyz, theta, theta))
-
-
-def _geometry(mechanism: RotaryDelta, bounds: Bounds) -> Array:
-    out = np.zeros((5, 5))
-    for i, arm in enumerate(mechanism.arms):
-        out[i] = arm.offset, arm.upper_arm, arm.forearm, arm.cos, arm.sin
-    out[3] = (*bounds.tool_offset, mechanism.handedness, 0.0)
-    out[4, compiled.EDGE] = arm_module.EDGE_ROUNDING
-    out[4, compiled.MEET] = rotary_delta.MEET_ROUNDING
-    out[4, compiled.UNDETERMINED] = rotary_delta.UNDETERMINED
-    out[4, compiled.TINY] = stiffness.TINY
-    out[4, compiled.LEAST_RHO] = arm_module.LEAST_RHO
-    return out
 
 
 def _limits(mechanism: RotaryDelta, bounds: Bounds) -> Array:
