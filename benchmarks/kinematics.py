@@ -17,6 +17,7 @@ import subprocess
 import tempfile
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -32,10 +33,10 @@ Run = Callable[[], object]
 class Tutorial:
     """The C code, compiled here."""
 
-    def __init__(self, folder: Path) -> None:
-        library = folder / "tutorial.so"
+    def __init__(self, folder: Path, *tuning: str) -> None:
+        library = folder / f"tutorial{len(tuning)}.so"
         source = Path(__file__).with_name("tutorial.c")
-        flags = ["-O3", "-march=native", "-std=c11", "-shared", "-fPIC"]
+        flags = ["-O3", *tuning, "-std=c11", "-shared", "-fPIC"]
         subprocess.run(["gcc", *flags, "-o", library, source, "-lm"], check=True)
         self._library = ctypes.CDLL(str(library))
 
@@ -67,13 +68,15 @@ def main() -> None:
     theta_deg = np.degrees(theta)
     batch = mechanism.batch
     with tempfile.TemporaryDirectory() as folder:
-        tutorial = Tutorial(Path(folder))
+        plain, native = Tutorial(Path(folder)), Tutorial(Path(folder), "-march=native")
         for name, into, back, rows, in_c in (
-            ("inverse", xyz, theta, batch.inverse_rows, lambda: tutorial.inverse(xyz)),
-            ("forward", theta, xyz, batch.forward_rows, lambda: tutorial.forward(theta_deg)),
+            ("inverse", xyz, theta, batch.inverse_rows, xyz),
+            ("forward", theta, xyz, batch.forward_rows, theta_deg),
         ):
             public, apart = getattr(mechanism, name), getattr(batch, name)
-            runs = _ways(public, apart, rows, into, in_c)
+            runs = _ways(public, apart, rows, into)
+            for way, tutorial in (("C", plain), ("C, -march=native", native)):
+                runs[way] = partial(getattr(tutorial, name), in_c)
             _compare(name, runs, chosen.poses, chosen.rounds)
             print(f"  public: at most {np.abs(public(into) - back).max():.1e} from the other way's")
     _one_pose(mechanism, kernel, xyz[:1], theta[:1])
@@ -84,14 +87,12 @@ def _ways(
     apart: Callable[..., Any],
     rows: Callable[..., Any],
     into: np.ndarray,
-    in_c: Run,
 ) -> dict[str, Run]:
     """Each way to solve the same poses; the arrays written to exist already, but for the rows'."""
     separate = tuple(np.ascontiguousarray(into[:, i]) for i in range(3))
     out = tuple(np.zeros_like(column) for column in separate)
     return {
         "copy": lambda: [np.copyto(o, s) for o, s in zip(out, separate, strict=True)],
-        "C": in_c,
         "arrays": lambda: apart(*separate, out=out),
         "arrays, two threads": lambda: apart(*separate, out=out, threads=2),
         "public rows": lambda: public(into),

@@ -229,21 +229,19 @@ def _meet(one: Vector, two: Vector, three: Vector, arms: Numbers, t: Tolerances)
     nx, ny, nz = _cross(ax, ay, az, bx, by, bz)
     square = nx * nx + ny * ny + nz * nz
     inverted = 1.0 / square
-    a_square, b_square = ax * ax + ay * ay + az * az, bx * bx + by * by + bz * bz
-    along_a = (a_square + (l1 - l2)) * (0.5 * inverted)
-    along_b = (b_square + (l1 - l3)) * (0.5 * inverted)
-    ex, ey, ez = (
-        along_a * bx - along_b * ax,
-        along_a * by - along_b * ay,
-        along_a * bz - along_b * az,
-    )
-    wx, wy, wz = _cross(ex, ey, ez, nx, ny, nz)
-    height = l1 - (wx * wx + wy * wy + wz * wz)
-    if least > 0.0 and height < 0.0 and height >= -least * l1 * a_square * b_square * inverted:
-        height = 0.0
+    a_square = az * az + (ay * ay + (ax * ax + (l1 - l2)))
+    b_square = bz * bz + (by * by + (bx * bx + (l1 - l3)))
+    ex, ey = a_square * bx - b_square * ax, a_square * by - b_square * ay
+    ez = a_square * bz - b_square * az
+    wx, wy, wz = _cross(ex, ey, ez, nx, ny, nz)  # of length |e| |n|: e lies in the elbows' plane
+    height = l1 - (ex * ex + ey * ey + ez * ez) * (0.25 * inverted)
+    if least > 0.0 and height < 0.0:
+        size = (ax * ax + ay * ay + az * az) * (bx * bx + by * by + bz * bz)
+        height = 0.0 if height >= -least * l1 * size * inverted else height
     h = handedness * math.sqrt(height * inverted)
     h = h if square > undetermined else math.nan
-    return dx + wx - nx * h, dy + wy - ny * h, dz + wz - nz * h
+    w = 0.5 * inverted
+    return (dx + wx * w) - nx * h, (dy + wy * w) - ny * h, (dz + wz * w) - nz * h
 
 
 @compiled_loop
