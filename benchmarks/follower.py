@@ -22,7 +22,7 @@ Maker = Callable[[Robot, np.random.Generator], Goal]
 
 
 def _width(robot: Robot) -> float:
-    space = robot.workspace
+    space = robot.zone
     return space.radius or max(abs(v) for v in (*(space.x or (100,)), *(space.y or (100,))))
 
 
@@ -35,7 +35,7 @@ def _beyond(robot: Robot, rng: np.random.Generator) -> Goal:
 
 
 def _place(robot: Robot, rng: np.random.Generator, half: float, beyond: float) -> Goal:
-    across, (low, high) = len(robot.axes) - 1, robot.workspace.z
+    across, (low, high) = len(robot.axes) - 1, robot.zone.z
     least, most = [-half] * across + [low - beyond], [half] * across + [high + beyond]
     return ToPoint(tuple(rng.uniform(least, most).tolist()))
 

@@ -227,7 +227,7 @@ def _robots(options: argparse.Namespace) -> int:
         print(json.dumps({"robots": [robot.name for robot in robots]}))
         return OK
     for robot in robots:
-        low, high = robot.workspace.z
+        low, high = robot.zone.z
         print(
             f"{robot.name:<12} {robot.kind}, {robot.joint_count} joints, "
             f"Z {low:g} to {high:g} mm, {robot.drive.driver or 'simulation only'}"

@@ -27,7 +27,7 @@ def configure_from(robot: Robot) -> Configure:
     Speeds are rounded down. Joint limits are rounded so that the ready pose, which is a whole
     number of microsteps, lies inside.
     """
-    joint, homing, workspace = robot.limits.joint, robot.homing, robot.workspace
+    joint, homing, workspace = robot.limits.joint, robot.homing, robot.zone
     per_rad = robot.drive.microsteps_per_rad
     ready = _microsteps(homing.ready, per_rad)
     return Configure(

@@ -51,7 +51,7 @@ class HeldBy:
         """The limit of one margin, for a person."""
         robot, arm = self._robot, name.arm
         who = "" if arm is None else f"Arm {arm + 1} "
-        space = robot.workspace
+        space = robot.zone
         match name.kind:
             case MarginKind.JOINT_MIN if arm is not None:
                 return f"{who}at its lower limit ({math.degrees(robot.joints.min[arm]):.1f}°)"

@@ -32,7 +32,7 @@ def build(file: schema.RobotFile) -> made.Robot:
         tool_offset=file.geometry.tool_offset,
         tool_axis=has_tool_axis,
         joints=_joints(file, joints),
-        workspace=_workspace(file.workspace),
+        zone=_zone(file.workspace),
         limits=_limits(file.limits, joints),
         drive=_drive(file.drive, joints),
         homing=_homing(file.homing, joints),
@@ -98,14 +98,14 @@ def _joints(file: schema.RobotFile, joints: tuple[JointNumbers, ...]) -> made.Jo
     )
 
 
-def _workspace(space: schema.DeltaWorkspace | schema.FiveBarWorkspace) -> made.Workspace:
+def _zone(space: schema.DeltaWorkspace | schema.FiveBarWorkspace) -> made.Zone:
     if isinstance(space, schema.FiveBarWorkspace):
-        return made.Workspace(z=space.z, x=space.x)
+        return made.Zone(z=space.z, x=space.x)
     if space.radius is None and (space.x is None or space.y is None):
         raise Inconsistent(
             "workspace", "has neither", "must give radius (a cylinder), or x and y (a box)"
         )
-    return made.Workspace(z=space.z, radius=space.radius, x=space.x, y=space.y)
+    return made.Zone(z=space.z, radius=space.radius, x=space.x, y=space.y)
 
 
 def _limits(limits: schema.Limits, joints: tuple[JointNumbers, ...]) -> made.Limits:
@@ -197,7 +197,7 @@ def _check_ready(robot: made.Robot, file: schema.RobotFile) -> None:
 
 
 def _workspace_reachable(robot: made.Robot) -> bool:
-    space = robot.workspace
+    space = robot.zone
     across = (-(space.radius or math.inf), space.radius or math.inf)
     ranges = {"X": space.x or across, "Y": space.y or across, "Z": space.z}
     axes = [

@@ -121,7 +121,7 @@ def _ball_joint(robot: Robot, limit: Margin, tip: Array) -> Reason:
 
 
 def _workspace(robot: Robot, limit: Margin, tip: Array) -> Reason:
-    space = robot.workspace
+    space = robot.zone
     if limit.kind is MarginKind.RADIUS and space.radius is not None:
         excess = float(np.linalg.norm(tip[:-1])) - space.radius
         text = f"It is {_length(excess)} outside the workspace's radius of {space.radius:g} mm."

@@ -31,8 +31,11 @@ class Joints:
 
 
 @dataclass(frozen=True, slots=True)
-class Workspace:
-    """Where the tool tip must stay, mm: a height, and a cylinder or a box around the centre."""
+class Zone:
+    """Where the tool tip must stay, mm: a height, and a cylinder or a box around the centre.
+
+    What a person allows, `[workspace]` in the file; what the arms reach is `Robot.workspace`.
+    """
 
     z: tuple[float, float]
     radius: float | None = None
@@ -118,7 +121,7 @@ class Robot:
     mechanism: Mechanism
     tool_offset: tuple[float, ...]
     joints: Joints
-    workspace: Workspace
+    zone: Zone
     limits: Limits
     drive: Drive
     homing: Homing
@@ -169,10 +172,10 @@ class Robot:
             joint_min=self.joints.min[:arms],
             joint_max=self.joints.max[:arms],
             ball_joint_max=self.joints.ball_joint_max,
-            z=self.workspace.z,
-            x=self.workspace.x,
-            y=self.workspace.y,
-            radius=self.workspace.radius,
+            z=self.zone.z,
+            x=self.zone.x,
+            y=self.zone.y,
+            radius=self.zone.radius,
         )
 
     @cached_property
@@ -210,7 +213,7 @@ class Robot:
             *(Margin(MarginKind.JOINT_MIN, arm) for arm in arms),
             *(Margin(MarginKind.JOINT_MAX, arm) for arm in arms),
             *(Margin(kind) for axis in self._box for kind in axis[1]),
-            *([Margin(MarginKind.RADIUS)] if self.workspace.radius is not None else []),
+            *([Margin(MarginKind.RADIUS)] if self.zone.radius is not None else []),
             *(Margin(kind, len(arms)) for kind in kinds),
         )
 
@@ -236,7 +239,7 @@ class Robot:
         ]
         for (low, high), _, axis in self._box:
             groups.append(np.stack([tip[..., axis] - low, high - tip[..., axis]], axis=-1))
-        radius = self.workspace.radius
+        radius = self.zone.radius
         if radius is not None:
             square = (tip[..., :-1] ** 2).sum(axis=-1, keepdims=True)
             groups.append((radius**2 - square) / (2 * radius))
@@ -265,9 +268,9 @@ class Robot:
     def _box(self) -> tuple[tuple[tuple[float, float], tuple[MarginKind, MarginKind], int], ...]:
         kinds = MarginKind
         axes = (
-            (self.workspace.z, (kinds.Z_MIN, kinds.Z_MAX), -1),
-            (self.workspace.x, (kinds.X_MIN, kinds.X_MAX), 0),
-            (self.workspace.y, (kinds.Y_MIN, kinds.Y_MAX), 1),
+            (self.zone.z, (kinds.Z_MIN, kinds.Z_MAX), -1),
+            (self.zone.x, (kinds.X_MIN, kinds.X_MAX), 0),
+            (self.zone.y, (kinds.Y_MIN, kinds.Y_MAX), 1),
         )
         return tuple((box, kind, axis) for box, kind, axis in axes if box is not None)
 

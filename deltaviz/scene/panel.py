@@ -124,7 +124,7 @@ def _angle_scales(robot: Robot) -> list[Scale]:
 
 
 def _position_scales(robot: Robot) -> list[Scale]:
-    workspace = robot.workspace
+    workspace = robot.zone
     radius = workspace.radius
     across = (-radius, radius) if radius is not None else (0.0, 0.0)
     ranges = {"X": workspace.x or across, "Y": workspace.y or across, "Z": workspace.z}

@@ -53,7 +53,7 @@ class Dimensions:
             "forearm": metres(mechanism.forearm),
             "tool_offset": metres(in_space(robot.tool_offset)),
             "tool_turns": robot.tool_axis,
-            "depth": tuple(metres(robot.workspace.z).tolist()),
+            "depth": tuple(metres(robot.zone.z).tolist()),
         }
         if isinstance(mechanism, FiveBar):
             return cls._of_five_bar(mechanism, lengths)

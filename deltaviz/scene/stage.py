@@ -61,7 +61,7 @@ class Stage:
         """Set floor, outline and cameras to a robot."""
         view = framing.frame(
             reach=model.reach,
-            depth=(float(metres(robot.workspace.z[0])), float(metres(robot.workspace.z[1]))),
+            depth=(float(metres(robot.zone.z[0])), float(metres(robot.zone.z[1]))),
             planar=is_planar(robot),
         )
         cell = 10.0 ** round(math.log10(view.radius / 8.0))
@@ -82,7 +82,7 @@ class Stage:
 
 def outline(robot: Robot) -> np.ndarray:
     """The edges of the workspace's cylinder, box or rectangle, (n, 2, 3) in metres."""
-    workspace = robot.workspace
+    workspace = robot.zone
     if workspace.radius is not None:
         angles = np.linspace(0.0, 2 * math.pi, _CIRCLE + 1)
         ring = workspace.radius * np.stack((np.cos(angles), np.sin(angles)), axis=-1)

@@ -28,7 +28,7 @@ def robot_json(robot: Robot) -> dict[str, Any]:
         "tool_axis": robot.tool_axis,
         "geometry": {**_geometry(robot.mechanism), "tool_offset": in_space(robot.tool_offset)},
         "workspace": {
-            axis: _plain(getattr(robot.workspace, axis)) for axis in ("x", "y", "z", "radius")
+            axis: _plain(getattr(robot.zone, axis)) for axis in ("x", "y", "z", "radius")
         },
         "limits": {
             "joint": {

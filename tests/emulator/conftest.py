@@ -76,8 +76,8 @@ def wander(robot: Robot) -> Callable[..., list[Knot]]:
 
 
 def _somewhere(robot: Robot, random: Random) -> tuple[float, float, float]:
-    low, high = robot.workspace.z
-    radius = 0.7 * (robot.workspace.radius or 0.0)
+    low, high = robot.zone.z
+    radius = 0.7 * (robot.zone.radius or 0.0)
     return (
         random.uniform(-radius, radius),
         random.uniform(-radius, radius),

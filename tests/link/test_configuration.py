@@ -162,7 +162,7 @@ def test_it_says_what_the_robot_file_says():
         robot.homing.fast[0], rel=1e-3
     )
     assert configure.options == Options.HOMING_TOGETHER | Options.SWITCH_ACTIVE_OPEN
-    assert configure.workspace_radius == robot.workspace.radius
+    assert configure.workspace_radius == robot.zone.radius
     assert configure.workspace_x == (-inf, inf)
     high = replace(robot, drive=replace(robot.drive, enable_active="high"))
     assert Options.ENABLE_ACTIVE_HIGH in configure_from(high).options

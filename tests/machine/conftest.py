@@ -276,7 +276,7 @@ def slides(joints: int) -> Robot:
         tool_axis=False,
         pose=lambda xyz, tool=None: np.asarray(xyz, dtype=float),
         joints=replace(base.joints, min=each(-1.0), max=each(1.0)),
-        workspace=SimpleNamespace(z=None, radius=None, x=None, y=None),
+        zone=SimpleNamespace(z=None, radius=None, x=None, y=None),
         limits=replace(
             base.limits,
             joint=replace(

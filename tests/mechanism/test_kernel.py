@@ -8,7 +8,7 @@ import pytest
 
 from deltaviz.mechanism import FiveBar, RotaryDelta
 from deltaviz.robots import Robot, load_robot, preset_names
-from deltaviz.robots.robot import Workspace
+from deltaviz.robots.robot import Zone
 
 
 def uneven_robot() -> Robot:
@@ -24,7 +24,7 @@ def uneven_robot() -> Robot:
         plain,
         mechanism=mechanism,
         tool_offset=(3.0, -4.0, -25.0),
-        workspace=Workspace(z=(-440.0, -250.0), radius=220.0, x=(-150.0, 160.0), y=(-170.0, 180.0)),
+        zone=Zone(z=(-440.0, -250.0), radius=220.0, x=(-150.0, 160.0), y=(-170.0, 180.0)),
     )
 
 
@@ -40,7 +40,7 @@ def uneven_five_bar() -> Robot:
         plain,
         mechanism=mechanism,
         tool_offset=(3.0, -25.0),
-        workspace=Workspace(z=(-270.0, -150.0), x=None),
+        zone=Zone(z=(-270.0, -150.0), x=None),
     )
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from deltaviz.motion.follower import Follower
 from deltaviz.motion.goal import ToPoint
 from deltaviz.robots import Robot, load_robot
-from deltaviz.robots.robot import Joints, Workspace
+from deltaviz.robots.robot import Joints, Zone
 
 Array = NDArray[np.float64]
 TARGETS = 8
@@ -41,8 +41,8 @@ def nearest(robot: Robot, cloud: Array, target: Array, rng: np.random.Generator)
 def test_unreachable_targets_are_approached_as_far_as_possible(name: str) -> None:
     robot = load_robot(name)
     rng = np.random.default_rng(11)
-    low, high = robot.workspace.z
-    width = robot.workspace.radius or 150.0
+    low, high = robot.zone.z
+    width = robot.zone.radius or 150.0
     box = [-width, -width, low], [width, width, high]
     cloud = legal(robot, rng.uniform(*box, size=(20000, 3)))
     follower = Follower(robot, robot.homing.ready, clock=lambda: 0.0, budget=1.0)
@@ -68,7 +68,7 @@ def test_a_place_behind_a_bend_of_the_boundary_is_reached() -> None:
     robot = replace(
         load_robot("stm32"),
         joints=Joints((-np.pi / 2,) * 3, (2.0,) * 3, np.radians(70)),
-        workspace=Workspace(z=(-445.0, -20.0), radius=400.0),
+        zone=Zone(z=(-445.0, -20.0), radius=400.0),
     )
     rng = np.random.default_rng(3)
     places = legal(robot, rng.uniform([-400, -400, -445], [400, 400, -20], size=(4000, 3)))

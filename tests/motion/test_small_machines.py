@@ -14,7 +14,7 @@ from deltaviz.mechanism.margin import Margin
 from deltaviz.motion.follower import Follower
 from deltaviz.motion.goal import AtJointVelocity, AtVelocity, Goal, Rest, ToAngles, ToPoint
 from deltaviz.robots import Robot, load_robot
-from deltaviz.robots.robot import CartesianMotion, JointMotion, Joints, Limits, Workspace
+from deltaviz.robots.robot import CartesianMotion, JointMotion, Joints, Limits, Zone
 
 Array = NDArray[np.float64]
 
@@ -114,7 +114,7 @@ def machine(matrix: list[list[float]]) -> Robot:
         mechanism=Skewed(tuple(map(tuple, matrix))),
         tool_offset=(0.0,) * count,
         joints=Joints((-1.0,) * count, (1.5,) * count, 1.0),
-        workspace=Workspace(z=(-60.0, 60.0)),
+        zone=Zone(z=(-60.0, 60.0)),
         limits=Limits(
             JointMotion((4.0,) * count, (50.0,) * count, (0.1,) * count),
             CartesianMotion(400.0, 4000.0, 100000.0),

@@ -25,8 +25,8 @@ def test_stm32_is_the_robot_of_the_contract():
     assert np.degrees(robot.joints.min) == pytest.approx([-45] * 3)
     assert np.degrees(robot.joints.max) == pytest.approx([90] * 3)
     assert robot.joints.ball_joint_max == pytest.approx(math.radians(45))
-    assert robot.workspace.z == (-440, -225)
-    assert robot.workspace.radius == 230
+    assert robot.zone.z == (-440, -225)
+    assert robot.zone.radius == 230
     assert np.degrees(robot.limits.joint.velocity) == pytest.approx([340] * 3)
     assert np.degrees(robot.limits.joint.acceleration) == pytest.approx([4500] * 3)
     assert np.degrees(robot.limits.joint.unhomed_velocity) == pytest.approx([5] * 3)
@@ -55,7 +55,7 @@ def test_zheng2023_is_table_1_and_its_cylinder_fits():
     assert mechanism.forearm[0] == 900
     assert (mechanism.base_radius[0], mechanism.effector_radius[0]) == (260, 50)
     around = np.linspace(0, 2 * math.pi, 361)
-    for z in np.linspace(*robot.workspace.z, 27):
+    for z in np.linspace(*robot.zone.z, 27):
         rim = np.stack([505 * np.cos(around), 505 * np.sin(around), 0 * around + z], axis=-1)
         assert (robot.margins(rim, robot.inverse(rim)) >= 0).all()
 
@@ -79,8 +79,8 @@ def test_fivebar_is_the_planar_robot():
     across, down = 60 + 100 * math.cos(robot.homing.ready[0]), 100 * math.sin(robot.homing.ready[0])
     tip = robot.forward(robot.homing.ready)
     assert tip == pytest.approx([0, -down - math.sqrt(200**2 - across**2)])
-    assert robot.workspace.x == (-100, 100)
-    assert (robot.workspace.y, robot.workspace.radius, robot.joints.ball_joint_max) == (None,) * 3
+    assert robot.zone.x == (-100, 100)
+    assert (robot.zone.y, robot.zone.radius, robot.joints.ball_joint_max) == (None,) * 3
 
 
 def test_ready_is_well_inside(preset):
@@ -90,7 +90,7 @@ def test_ready_is_well_inside(preset):
 
 
 def test_most_of_the_workspace_is_within_reach(preset):
-    space = preset.workspace
+    space = preset.zone
     around = (-(space.radius or 0), space.radius or 0)
     ranges = {"X": space.x or around, "Y": space.y or around, "Z": space.z}
     low, high = np.array([ranges[axis] for axis in preset.axes]).T

@@ -7,9 +7,9 @@ import pytest
 
 from deltaviz.mechanism import MarginKind
 from deltaviz.robots import load_robot
-from deltaviz.robots.robot import Workspace
+from deltaviz.robots.robot import Zone
 
-OPEN = Workspace(z=(-2000.0, 2000.0), radius=2000.0)
+OPEN = Zone(z=(-2000.0, 2000.0), radius=2000.0)
 
 
 def only(reach, kind, arm=None):
@@ -40,7 +40,7 @@ def test_too_far(stm32):
 
 
 def test_too_near_for_one_arm_only(stm32):
-    reach = replace(stm32, workspace=OPEN).reach([150, 0, -170])
+    reach = replace(stm32, zone=OPEN).reach([150, 0, -170])
     reason = only(reach, MarginKind.TYPE_1, 0)
     assert reason.excess == pytest.approx(338 - 125 - np.hypot(110, 170))
     assert "too close" in str(reason)
@@ -77,7 +77,7 @@ def test_the_radius(stm32):
 
 
 def test_a_box(stm32):
-    boxed = replace(stm32, workspace=Workspace(z=(-440, -225), x=(-50, 60), y=(-70, 80)))
+    boxed = replace(stm32, zone=Zone(z=(-440, -225), x=(-50, 60), y=(-70, 80)))
     for point, kind, excess in (
         ([-51, 0, -300], MarginKind.X_MIN, 1),
         ([62, 0, -300], MarginKind.X_MAX, 2),
@@ -92,7 +92,7 @@ def test_a_box(stm32):
 def test_near_the_edge_of_reach(stm32):
     free = replace(
         stm32,
-        workspace=OPEN,
+        zone=OPEN,
         joints=replace(stm32.joints, min=(-3.0,) * 3, max=(3.0,) * 3),
     )
     reach = free.reach([0, 0, -460.5])
@@ -103,7 +103,7 @@ def test_near_the_edge_of_reach(stm32):
 
 
 def test_above_the_elbows(stm32):
-    free = replace(stm32, workspace=OPEN)
+    free = replace(stm32, zone=OPEN)
     assert "hold the effector" in str(only(free.reach([0, 0, 300]), MarginKind.TYPE_2))
 
 
@@ -142,7 +142,7 @@ def test_in_a_plane():
 def test_legal_is_what_margins_say(preset):
     """One truth: `reach` agrees with `margins` and with the kernel, everywhere."""
     rng = np.random.default_rng(4)
-    space = preset.workspace
+    space = preset.zone
     wide = 1.2 * (space.radius or max(box[1] for box in (space.x, space.y) if box))
     across = len(preset.axes) - 1
     low, high = [-wide] * across + [space.z[0] - 20], [wide] * across + [space.z[1] + 20]

@@ -60,7 +60,7 @@ class FakeMachine:
     @property
     def middle(self) -> tuple[float, ...]:
         """On the z axis, half way down the workspace."""
-        return in_robot(self.robot, (0.0, 0.0, sum(self.robot.workspace.z) / 2))
+        return in_robot(self.robot, (0.0, 0.0, sum(self.robot.zone.z) / 2))
 
     def _at(self, xyz: tuple[float, ...], **changes: Any) -> Snapshot:
         theta = tuple(float(angle) for angle in self.robot.inverse(xyz))
@@ -274,8 +274,8 @@ def other_robot(robot: Robot) -> Robot:
     mechanism = RotaryDelta(
         base_radius=60, effector_radius=32, upper_arm=63, forearm=268, azimuths_deg=(-90, 30, 150)
     )
-    workspace = dataclasses.replace(robot.workspace, z=(-290.0, -230.0), radius=120.0)
-    return dataclasses.replace(robot, name="other", mechanism=mechanism, workspace=workspace)
+    zone = dataclasses.replace(robot.zone, z=(-290.0, -230.0), radius=120.0)
+    return dataclasses.replace(robot, name="other", mechanism=mechanism, zone=zone)
 
 
 @pytest.fixture(scope="session")

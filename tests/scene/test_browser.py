@@ -130,7 +130,7 @@ def test_what_was_grabbed_stays_under_the_pointer(page: Page, stand: Any, shift:
     stand.eventually(lambda: stand.machine.of(DragEnd))
     start, last = stand.machine.of(DragStart), stand.machine.of(DragTo)[-1]
     assert [intent.client for intent in start] == ["anna"]
-    moved = np.subtract(last.xyz, (0.0, 0.0, sum(stand.machine.robot.workspace.z) / 2))
+    moved = np.subtract(last.xyz, (0.0, 0.0, sum(stand.machine.robot.zone.z) / 2))
     assert abs(moved[2]) < 1e-6 if not shift else np.abs(moved[:2]).max() < 1e-6
     assert np.linalg.norm(moved) > 20.0
 
@@ -143,7 +143,7 @@ def test_a_slider_posts_angles_and_the_others_follow(page: Page, stand: Any) -> 
         page.wait_for_timeout(80)
     intent = stand.eventually(lambda: stand.machine.of(FollowAngles))[-1]
     assert intent.client == "anna"
-    z_before = sum(stand.machine.robot.workspace.z) / 2
+    z_before = sum(stand.machine.robot.zone.z) / 2
     box = page.get_by_role("textbox")
     stand.eventually(
         lambda: (page.wait_for_timeout(50), float(box.nth(5).input_value()) != z_before)[1]

@@ -22,7 +22,7 @@ def drawn(request: pytest.FixtureRequest) -> Robot:
 @pytest.mark.parametrize("offset", [(0, 0, 0), (60, 0, 0), (-30, 45, 8)])
 def test_the_drawn_robot_closes(drawn: Robot, offset: tuple[float, float, float]) -> None:
     """Arms and rods, turned as they are drawn, end where the next part begins."""
-    tip = np.add((0.0, 0.0, sum(drawn.workspace.z) / 2), offset)
+    tip = np.add((0.0, 0.0, sum(drawn.zone.z) / 2), offset)
     if is_planar(drawn):
         tip[1] = 0.0
     size = Dimensions.of(drawn)

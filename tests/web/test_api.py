@@ -244,7 +244,7 @@ def test_the_robot_is_described_for_people_and_programs(client: TestClient, robo
     assert told["geometry"]["upper_arm"] == [125.0] * 3
     assert told["limits"]["joint"]["min_deg"] == [-45.0] * 3
     assert told["limits"]["cartesian"]["velocity"] == robot.limits.cartesian.velocity
-    assert told["workspace"]["z"] == list(robot.workspace.z)
+    assert told["workspace"]["z"] == list(robot.zone.z)
     assert "stm32" in told["presets"]
 
 

@@ -158,14 +158,14 @@ def test_it_brakes_before_it_leaves_the_workspace(guarded):
         Refusal.STATE,
     }
     assert bench.board.cause in (StopCause.BAD_SEGMENT, StopCause.UNDERRUN)
-    assert robot.workspace.z[0] - 0.5 <= tip[-1] < robot.workspace.z[0] + 20
+    assert robot.zone.z[0] - 0.5 <= tip[-1] < robot.zone.z[0] + 20
 
 
 @simulated_only
 def test_without_its_own_workspace_check_it_would_leave(guarded, monkeypatch):
     monkeypatch.setattr(Checks, "_workspace_objection", lambda *_: None)
     bench, robot = guarded
-    assert fall(bench, robot)[-1] < robot.workspace.z[0] - 1
+    assert fall(bench, robot)[-1] < robot.zone.z[0] - 1
 
 
 TOP_VELOCITY = 200 * 1000 * 65536 // 2004  # a step in 2.004 ticks; 200 are a millisecond

@@ -72,7 +72,7 @@ def test_no_joint_is_beyond_its_limits(name):
 def test_it_looks_between_the_ends(monkeypatch):
     """Down through the floor of the workspace and up again."""
     robot = load_robot("stm32")
-    floor = robot.workspace.z[0]
+    floor = robot.zone.z[0]
     for deep, refused in ((0.05, None), (0.15, Refusal.WORKSPACE)):
         speed = deep * 4 / 0.050
         here, v = np.array([20.0, 30.0, floor]), np.array([0.0, 0.0, speed])
