@@ -89,6 +89,11 @@ class FiveBar:
             for i, azimuth in enumerate((math.pi, 0.0))
         )
 
+    @property
+    def handedness(self) -> float:
+        """The sign of type 2 margins, as the rotary delta's: here always 1."""
+        return 1.0
+
     def inverse(self, xyz: ArrayLike) -> Array:
         """Joint angles of platform positions, (..., 2) mm to (..., 2) rad, both elbows outside.
 

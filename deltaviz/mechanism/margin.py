@@ -13,6 +13,7 @@ class MarginKind(Enum):
     BALL_JOINT = "ball joint"
     JOINT_MIN = "lower joint limit"
     JOINT_MAX = "upper joint limit"
+    COLLISION = "collision of the robot's own parts"  # of the workspace's analysis alone
     Z_MIN = "lower end of the workspace"
     Z_MAX = "upper end of the workspace"
     RADIUS = "radius of the workspace"

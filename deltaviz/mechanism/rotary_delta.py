@@ -290,6 +290,14 @@ class RotaryDelta:
 
     def _check(self) -> None:
         for i, arm in enumerate(self.arms):
+            if arm.offset <= -arm.upper_arm:
+                most = self.base_radius[i] + arm.upper_arm
+                raise GeometryError(
+                    "effector_radius",
+                    self.effector_radius[i],
+                    f"must be less than base_radius + upper_arm ({most:g}): the elbow of arm "
+                    f"{i + 1} could never stand outside the effector's joint",
+                )
             if abs(arm.offset) >= arm.upper_arm + arm.forearm:
                 raise GeometryError(
                     "base_radius",

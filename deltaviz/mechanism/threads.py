@@ -6,12 +6,14 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from itertools import pairwise
 
-LEAST_SHARE = 10_000  # rows a thread gets, below which starting one costs more than it saves
+LEAST_SHARE = 10_000  # poses a thread gets, below which starting one costs more than it saves
 
 
-def in_threads(run: Callable[[slice], object], rows: int, threads: int) -> None:
+def in_threads(
+    run: Callable[[slice], object], rows: int, threads: int, *, least: int = LEAST_SHARE
+) -> None:
     """`run` over slices that together are `range(rows)`; it must only write to its own slice."""
-    shares = max(1, min(threads, rows // LEAST_SHARE))
+    shares = max(1, min(threads, rows // least))
     edges = [rows * share // shares for share in range(shares + 1)]
     slices = [slice(start, end) for start, end in pairwise(edges)]
     if shares == 1:

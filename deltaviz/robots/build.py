@@ -9,8 +9,11 @@ from collections.abc import Callable
 import numpy as np
 
 from deltaviz.mechanism import FiveBar, GeometryError, Mechanism, RotaryDelta
+from deltaviz.mechanism.masses import Masses
 from deltaviz.robots import robot as made
 from deltaviz.robots import schema
+from deltaviz.robots.bodies import Bodies
+from deltaviz.robots.closing import can_meet, shortest_forearm
 from deltaviz.robots.errors import Inconsistent
 from deltaviz.robots.joint_numbers import JointNumbers, check_fields, joint_numbers
 
@@ -36,9 +39,12 @@ def build(file: schema.RobotFile) -> made.Robot:
         limits=_limits(file.limits, joints),
         drive=_drive(file.drive, joints),
         homing=_homing(file.homing, joints),
+        bodies=_bodies(file.bodies) if isinstance(file, schema.RotaryDeltaFile) else None,
+        masses=_masses(file.masses),
     )
     if has_tool_axis:
         _check_tool(robot, joints[-1])
+    _check_closing(robot, file)
     _check_ready(robot, file)
     return robot
 
@@ -155,6 +161,38 @@ def _radians(
     return tuple(math.radians(value(joint)) for joint in joints)
 
 
+def _bodies(bodies: schema.Bodies | None) -> Bodies | None:
+    if bodies is None:
+        return None
+    for thickness in ("upper_arm_diameter", "effector_thickness"):
+        between = getattr(bodies, thickness) + bodies.rod_diameter
+        if not bodies.rod_spacing > between:
+            raise Inconsistent(
+                "bodies.rod_spacing",
+                bodies.rod_spacing,
+                f"must be greater than bodies.{thickness} + bodies.rod_diameter ({between:g}): "
+                "the rods pass on both sides",
+            )
+    return Bodies(
+        base_thickness=bodies.base_thickness,
+        upper_arm_diameter=bodies.upper_arm_diameter,
+        rod_diameter=bodies.rod_diameter,
+        rod_spacing=bodies.rod_spacing,
+        effector_thickness=bodies.effector_thickness,
+    )
+
+
+def _masses(masses: schema.Masses | None) -> Masses | None:
+    if masses is None:
+        return None
+    return Masses(
+        effector=masses.effector_kg,
+        upper_arm=masses.upper_arm_kg,
+        forearm=masses.forearm_kg,
+        motor_inertia=masses.motor_inertia_kg_m2,
+    )
+
+
 def _check_tool(robot: made.Robot, tool: JointNumbers) -> None:
     if not tool.low <= tool.ready <= tool.high:
         field = f"{tool.sections.homing}.ready_deg"
@@ -169,6 +207,19 @@ def _check_tool(robot: made.Robot, tool: JointNumbers) -> None:
 
 
 _MUST_MEET = "must be a pose in which the forearms can meet"
+
+
+def _check_closing(robot: made.Robot, file: schema.RobotFile) -> None:
+    mechanism, bounds = robot.mechanism, robot.bounds
+    if can_meet(mechanism, bounds.joint_min, bounds.joint_max):
+        return
+    shortest = shortest_forearm(mechanism, bounds.joint_min, bounds.joint_max)
+    length = f"greater than {shortest:.6g}" if shortest else "longer"
+    raise Inconsistent(
+        "geometry.forearm",
+        list(file.geometry.forearm),
+        f"must be {length}: between joints.min_deg and joints.max_deg the forearms cannot meet",
+    )
 
 
 def _check_ready(robot: made.Robot, file: schema.RobotFile) -> None:

@@ -14,7 +14,9 @@ from deltaviz.mechanism.arrays import Array, rows
 from deltaviz.mechanism.bounds import ROUNDING, Bounds
 from deltaviz.mechanism.kernel import Kernel
 from deltaviz.mechanism.margin import Margin, MarginKind
+from deltaviz.mechanism.masses import Masses
 from deltaviz.mechanism.mechanism import Mechanism
+from deltaviz.robots.bodies import Bodies
 
 if TYPE_CHECKING:
     from deltaviz.robots.reach import Reach
@@ -126,6 +128,8 @@ class Robot:
     drive: Drive
     homing: Homing
     tool_axis: bool = False
+    bodies: Bodies | None = None
+    masses: Masses | None = None
 
     @property
     def joint_count(self) -> int:

@@ -255,6 +255,25 @@ class ToolAxis(Section):
     homing: ToolHoming
 
 
+class Bodies(Section):
+    """How thick the parts are, for the collisions of the workspace's analysis."""
+
+    base_thickness: Positive
+    upper_arm_diameter: Positive
+    rod_diameter: Positive
+    rod_spacing: Positive
+    effector_thickness: Positive
+
+
+class Masses(Section):
+    """What the parts weigh, for torques."""
+
+    effector_kg: Positive
+    upper_arm_kg: Positive
+    forearm_kg: Positive
+    motor_inertia_kg_m2: Positive
+
+
 class RotaryDeltaFile(Section):
     name: Text
     kind: Literal["rotary_delta"]
@@ -265,6 +284,8 @@ class RotaryDeltaFile(Section):
     drive: Drive
     homing: Homing
     tool_axis: ToolAxis | None = None
+    bodies: Bodies | None = None
+    masses: Masses | None = None
 
 
 class FiveBarFile(Section):
@@ -276,6 +297,7 @@ class FiveBarFile(Section):
     limits: Limits
     drive: Drive
     homing: Homing
+    masses: Masses | None = None
 
 
 RobotFile: TypeAlias = RotaryDeltaFile | FiveBarFile
