@@ -20,6 +20,7 @@ from deltaviz.robots.bodies import Bodies
 
 if TYPE_CHECKING:
     from deltaviz.robots.reach import Reach
+    from deltaviz.robots.workspace import Limit, Workspace
 
 
 @dataclass(frozen=True, slots=True)
@@ -254,6 +255,15 @@ class Robot:
                 (self.joints.max[-1] - turn) * self.turn_scale,
             ]
         return np.concatenate(groups, axis=-1) + ROUNDING
+
+    def workspace(
+        self, limits: Limit | None = None, *, tolerance: float = 1.0, threads: int = 1
+    ) -> Workspace:
+        """All tool tips within reach under limits (those of the machine, without the zone), its
+        boundary to a tolerance in mm."""
+        from deltaviz.robots.workspace import Limit, Workspace
+
+        return Workspace(self, limits or Limit.MACHINE, tolerance=tolerance, threads=threads)
 
     def reach(self, xyz: ArrayLike) -> Reach:
         """Whether the tool tip may be at one point (d,) mm, and if not, why."""

@@ -308,3 +308,107 @@ def field(
                 for j in range(size):
                     value[ix, iy, start + j] = found[j]
                     code[ix, iy, start + j] = codes[j]
+
+
+@compiled_loop
+def _from_limits(p: float, z: float, sign: float, a: ArmNumbers) -> float:
+    """Distance from the half planes, bounded by the motor axis, in which an arm at one of its
+    joint's limits lies; with `sign` -1 in which its opposite lies.
+
+    Out of an arm's reach its angle is taken for the nearest to reaching, which turns past a limit
+    nowhere but there.
+    """
+    least = math.inf
+    for limit in range(2):
+        cos, sin = a[COS_LOW + 2 * limit] * sign, a[SIN_LOW + 2 * limit] * sign
+        along = p * cos - z * sin
+        across = abs(p * sin + z * cos)
+        least = min(least, across if along > 0.0 else math.sqrt(p * p + z * z))
+    return least
+
+
+@compiled_loop
+def _arm_bounds(
+    x: float, y: float, z: float, r: float, arms: Array, rest: Array, off: Array, i: int,
+    forearm: Array, found: Array,
+) -> None:  # fmt: skip
+    """Bounds of one arm's margins over a ball of radius `r`: see `bounds`.
+
+    `found` is lower, upper, and the sum of the squared slopes of the forearms' directions;
+    infinite when the arm does not reach all of the ball.
+    """
+    count = arms.shape[0]
+    a = _numbers(arms, i)
+    p, v = _arm_plane(x, y, a)
+    rho = math.sqrt(p * p + z * z)
+    nearest, farthest = _circle_distances(rho, v, a)
+    far, near = a[FORE] - nearest, farthest - a[FORE]
+    found[0] = min(found[0], far - r, near - r)
+    found[1] = min(found[1], far + r, near + r)
+    if off[4 * count + i] == 0.0:
+        lean = a[SIDEWAYS] - abs(v)
+        found[0], found[1] = min(found[0], lean - r), min(found[1], lean + r)
+    cos, sin, _ = _elbow_angle(p, v, z, rho, a)
+    if off[2 * count + i] == 0.0:
+        low, high = _joint_margins(p, v, z, cos, sin, a)
+        found[0] = min(found[0], low - r, high - r)
+        if (far > r or _from_limits(p, z, 1.0, a) > r) and (
+            near > r or _from_limits(p, z, -1.0, a) > r
+        ):
+            found[1] = min(found[1], low + r, high + r)
+    if not (far > r and near > r):
+        found[0], found[2] = -math.inf, math.inf
+        return
+    square, twice = a[FORE] * a[FORE], 2.0 * a[UPPER]
+    least = (
+        math.sqrt(
+            (square - (nearest + r) * (nearest + r)) * ((farthest - r) * (farthest - r) - square)
+        )
+        / twice
+    )
+    if off[5 * count + i] == 0.0:
+        inner = max(nearest - r, 0.0)
+        most = (square - inner * inner) * ((farthest + r) * (farthest + r) - square)
+        most = most / (twice * twice)
+        reserve, scale = rest[TYPE_1_RESERVE], a[TYPE_1_SCALE]
+        narrow, wide = max(rho - r, 0.0), rho + r
+        found[0] = min(found[0], (least * least / (wide * wide) - reserve) * scale)
+        if most < narrow * narrow:
+            found[1] = min(found[1], (most / (narrow * narrow) - reserve) * scale)
+    slope = 1.0 / a[FORE] + 1.0 / least
+    found[2] += slope * slope
+    ux, uy, uz = _forearm(p, v, z, cos, sin, a)
+    forearm[3 * i, 0], forearm[3 * i + 1, 0], forearm[3 * i + 2, 0] = ux, uy, uz
+
+
+@compiled_loop
+def bounds(
+    xyz: Array, radius: Array, arms: Array, rest: Array, off: Array, lower: Array, upper: Array
+) -> None:
+    """Of balls around tool tips: `lower` is not negative only if the whole ball lies within the
+    workspace, `upper` is negative only if all of it lies outside."""
+    count = arms.shape[0]
+    point, found = np.empty((3, 1)), np.empty(3)
+    forearm, firm, zone = np.empty((3 * count, 1)), np.empty((2, 1)), np.empty((7, 1))
+    for k in range(xyz.shape[0]):
+        r = radius[k]
+        found[0], found[1], found[2] = math.inf, math.inf, 0.0
+        for axis in range(3):
+            point[axis, 0] = xyz[k, axis] - rest[TOOL + axis]
+        for i in range(count):
+            _arm_bounds(
+                point[0, 0], point[1, 0], point[2, 0], r, arms, rest, off, i, forearm, found
+            )
+        if found[2] < math.inf:
+            _firmness_margins(forearm, 1, arms, rest, firm[0], firm[1])
+            change = r * rest[TYPE_2_SCALE] * math.sqrt(found[2])
+            for kind in range(2):
+                if off[KINDS * count + kind] == 0.0:
+                    found[0] = min(found[0], firm[kind, 0] - change)
+                    found[1] = min(found[1], firm[kind, 0] + change)
+        _zone_margins(point, 1, rest, zone)
+        for column in range(7):
+            if off[KINDS * count + 2 + column] == 0.0:
+                found[0] = min(found[0], zone[column, 0] - r)
+                found[1] = min(found[1], zone[column, 0] + r)
+        lower[k], upper[k] = found[0] + rest[ROUNDING], found[1] + rest[ROUNDING]
