@@ -214,6 +214,21 @@ def _print_values(values: list[float], *, key: str, unit: str, digits: int, as_j
         print("  ".join(shown), unit)
 
 
+def _add_workspace(parser: argparse.ArgumentParser) -> None:
+    from deltaviz import workspace_command
+
+    _add_robot(parser)
+    _add_json(parser)
+    workspace_command.add_arguments(parser)
+    parser.set_defaults(run=_workspace)
+
+
+def _workspace(options: argparse.Namespace) -> int:
+    from deltaviz import workspace_command
+
+    return workspace_command.run(_load(options.robot), options)
+
+
 def _add_robots(parser: argparse.ArgumentParser) -> None:
     _add_json(parser)
     parser.set_defaults(run=_robots)
@@ -363,6 +378,7 @@ _COMMANDS: dict[str, tuple[Callable[[argparse.ArgumentParser], None], str]] = {
     "serve": (_add_serve, "Run the server and open the page (the default command)."),
     "ik": (_add_ik, "Joint angles for a tool tip position."),
     "fk": (_add_fk, "Tool tip position for joint angles."),
+    "workspace": (_add_workspace, "What a robot reaches, how well, and what fits inside."),
     "robots": (_add_robots, "The robots that come with deltaviz."),
     "ports": (_add_ports, "Serial ports, with what they are, and which of them has a board."),
     "emulate": (_add_emulate, "The real firmware in QEMU, as a board to connect to."),
