@@ -260,8 +260,8 @@ def _print_report(found: Report) -> None:
         one, other = found.parts.parts
         print(f"; there its parts come no nearer than {found.parts.gap:.1f} mm ({one}, {other})")
     _print_reach(found)
-    _print_inscribed("cylinder", found.cylinder)
-    _print_inscribed("rectangle" if planar else "box", found.box)
+    _print_inscribed(found.cylinder)
+    _print_inscribed(found.box)
     _print_quality(found)
     _print_torques(found)
 
@@ -276,13 +276,10 @@ def _print_reach(found: Report) -> None:
     print()
 
 
-def _print_inscribed(what: str, found: Inscribed | None) -> None:
+def _print_inscribed(found: Inscribed | None) -> None:
     if found is not None:
         more = 100 * (found.most / found.shape.volume - 1)
-        text = str(found.shape)
-        if what == "rectangle":
-            text = text.replace("box", "rectangle", 1)
-        print(f"Largest: {text} (none has over {more:.1f} % more)")
+        print(f"Largest: {found.shape} (none has over {more:.1f} % more)")
 
 
 def _print_quality(found: Report) -> None:

@@ -29,8 +29,14 @@ class Box:
     def empty(self) -> bool:
         return bool((self.high < self.low).any())
 
-    def meets(self, other: Box) -> Box:
-        return Box(np.maximum(self.low, other.low), np.minimum(self.high, other.high))
+    def grown(self, share: float) -> Box:
+        """By a share of its longest side, on all sides."""
+        by = share * self.size.max()
+        return Box(self.low - by, self.high + by)
+
+    def with_(self, other: Box) -> Box:
+        """The smallest box that holds both."""
+        return Box(np.minimum(self.low, other.low), np.maximum(self.high, other.high))
 
 
 @dataclass(frozen=True)
@@ -78,6 +84,11 @@ class Cells:
         lower, upper = margins.bounds(self.centres, self.radius)
         return lower >= 0.0, upper < 0.0
 
+    def beyond(self, box: Box) -> Flags:
+        """Which are not wholly within it."""
+        low, high = self.centres - self.half, self.centres + self.half
+        return ((low < box.low) | (high > box.high)).any(axis=1)
+
     @property
     def hull(self) -> Box:
         return Box(self.centres.min(axis=0) - self.half, self.centres.max(axis=0) + self.half)
@@ -94,7 +105,8 @@ def reach_box(margins: Margins) -> Box:
     return box if margins.dimensions == 3 else Box(box.low[[0, 2]], box.high[[0, 2]])
 
 
-HULL_CELLS = 20_000  # about so many are judged for a hull
+HULL_CELLS = 50_000  # judged at once before a hull is left as wide as it is
+HULL_SLACK = 0.01  # of its longest side, on each side
 
 
 def hull(margins: Margins) -> Box | None:
@@ -104,11 +116,18 @@ def hull(margins: Margins) -> Box | None:
     if box.empty:
         return None
     cells = Cells.of(box, float(box.size.max()) / 6)
+    known: Box | None = None  # around points of the workspace, and a little more
     while True:
         _, outside = cells.judge(margins)
         cells = cells[~outside]
+        legal = cells.centres[margins.least(cells.centres) >= 0]
+        if len(legal):
+            found = Box(legal.min(axis=0), legal.max(axis=0)).grown(HULL_SLACK)
+            known = found if known is None else known.with_(found)
+        if known is not None:
+            cells = cells[cells.beyond(known)]
         if not len(cells):
-            return None
+            return known
         if len(cells) * 2 ** cells.centres.shape[1] > HULL_CELLS:
-            return cells.hull
+            return cells.hull if known is None else known.with_(cells.hull)
         cells = cells.halved()

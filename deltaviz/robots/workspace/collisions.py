@@ -45,7 +45,7 @@ class Collisions:
         named = _capsules(robot.mechanism, robot.bodies)
         parts = tuple(part for part, _ in named)
         pairs = [
-            (a, b)
+            (a, b, _hinged(parts[a], parts[b]))
             for a, b in itertools.combinations(range(len(parts)), 2)
             if _apart(parts[a], parts[b])
         ]
@@ -68,7 +68,7 @@ class Collisions:
         return out
 
     def names(self, pair: int) -> tuple[Part, Part]:
-        first, second = self.pairs[pair]
+        first, second, _ = self.pairs[pair]
         return self.parts[first], self.parts[second]
 
 
@@ -106,3 +106,7 @@ def _apart(one: Part, other: Part) -> bool:
     if one.name == other.name and one.name in WHOLE:
         return False
     return not (one.arm == other.arm and names == {"base", "upper arm"})
+
+
+def _hinged(one: Part, other: Part) -> bool:
+    return one.arm == other.arm and (one.name, other.name) == ("upper arm", "rod")

@@ -7,6 +7,11 @@ moved inward by the effector's radius. `pairs` names the capsules that must not 
 
 While the effector moves by 1 mm, an elbow moves by at most l/q, see `margins_compiled`; so how
 fast two capsules come nearer is bounded.
+
+That bound is too wide for a rod and its own upper arm, which are near each other everywhere. They
+hang on one elbow, h apart: their lines pass each other at a distance of h q/√(q² + v²), which
+bounds it from below; and one turns against the other by at most (1 + l/q)/l + (l/q)/L a mm, which
+bounds how far the place where they are nearest moves.
 """
 
 from __future__ import annotations
@@ -38,18 +43,28 @@ SIN = 4
 TOOL = 0
 ROUNDING = 7
 
+# Columns of `pairs`.
+HINGED = 2  # 1 for an upper arm and its own rod, in this order
+
+# Rows of `elbows`: x, y, z, and over a ball
+SPEED = 3  # at most l/q
+LEAST_Q = 4
+MOST_V = 5
+ELBOW_ROWS = 6
+
 TINY = 1e-12
 BLOCK = 64  # points whose capsules stay in the nearest cache
 
 
 @compiled_loop
 def _elbows(points: Array, radius: Array, size: int, arms: Array, i: int, out: Array) -> None:
-    """Rows x, y, z and a bound on how the elbow moves while the effector moves by 1 within a
-    ball; infinite where the arm does not reach all of it."""
+    """Rows x, y, z; a bound on how the elbow moves while the effector moves by 1 within a ball,
+    infinite where the arm does not reach all of it; and the least q and largest v there."""
     offset, upper, fore = arms[i, OFFSET], arms[i, UPPER], arms[i, FORE]
     cos, sin = arms[i, COS], arms[i, SIN]
     xs, ys, zs = points[0], points[1], points[2]
-    ex, ey, ez, speed = out[0], out[1], out[2], out[3]
+    ex, ey, ez, speed = out[0], out[1], out[2], out[SPEED]
+    least_q, most_v = out[LEAST_Q], out[MOST_V]
     for j in range(size):
         z = zs[j]
         p = xs[j] * cos + ys[j] * sin - offset
@@ -65,8 +80,10 @@ def _elbows(points: Array, radius: Array, size: int, arms: Array, i: int, out: A
         farthest = math.sqrt(outer * outer + v * v) - radius[j]
         square = (fore * fore - nearest * nearest) * (farthest * farthest - fore * fore)
         reaches = nearest < fore and farthest > fore
-        moves = 2.0 * upper * fore / math.sqrt(max(square, TINY))
-        speed[j] = moves if reaches else math.inf
+        least = math.sqrt(max(square, TINY)) / (2.0 * upper)
+        speed[j] = fore / least if reaches else math.inf
+        least_q[j] = least if reaches else 0.0
+        most_v[j] = abs(v) + radius[j]
 
 
 @compiled_loop
@@ -89,7 +106,7 @@ def _place(end: Array, points: Array, size: int, elbows: Array, out: Array) -> N
     for j in range(size):
         speed[j] = 0.0 if to == BASE else 1.0
     if to >= ELBOW:
-        moved = elbows[to - ELBOW, 3]
+        moved = elbows[to - ELBOW, SPEED]
         for j in range(size):
             speed[j] = moved[j]
 
@@ -98,8 +115,9 @@ def _place(end: Array, points: Array, size: int, elbows: Array, out: Array) -> N
 def _segment_distance(
     ax: float, ay: float, az: float, bx: float, by: float, bz: float,
     cx: float, cy: float, cz: float, dx: float, dy: float, dz: float,
-) -> float:  # fmt: skip
-    """Of the line segments a-b and c-d."""
+) -> tuple[float, float]:  # fmt: skip
+    """Of the line segments a-b and c-d, and which share of the second lies before its nearest
+    point."""
     ux, uy, uz, vx, vy, vz = bx - ax, by - ay, bz - az, dx - cx, dy - cy, dz - cz
     wx, wy, wz = ax - cx, ay - cy, az - cz
     uu, vv = ux * ux + uy * uy + uz * uz, vx * vx + vy * vy + vz * vz
@@ -112,31 +130,53 @@ def _segment_distance(
     t = min(max((uv * s + vw) / vv, 0.0), 1.0)
     s = min(max((uv * t - uw) / uu, 0.0), 1.0)  # another only where t was cut off
     x, y, z = wx + s * ux - t * vx, wy + s * uy - t * vy, wz + s * uz - t * vz
-    return math.sqrt(x * x + y * y + z * z)
+    return math.sqrt(x * x + y * y + z * z), t
 
 
 @compiled_loop
 def _pair(
     ends: Array, a: int, b: int, gap: float, radius: Array, size: int, n: int,
-    lower: Array, upper: Array, least: Array, which: NDArray[np.int64],
+    nearer: Array, farther: Array, lower: Array, upper: Array, least: Array,
+    which: NDArray[np.int64],
 ) -> None:  # fmt: skip
-    """Takes one pair of capsules into the bounds of a block."""
+    """Takes one pair of capsules into the bounds of a block; `nearer` and `farther` bound their
+    distance too, the second by how much a share of the second's length adds."""
     one, two = ends[2 * a], ends[2 * a + 1]
     three, four = ends[2 * b], ends[2 * b + 1]
     ax, ay, az, bx, by, bz = one[0], one[1], one[2], two[0], two[1], two[2]
     cx, cy, cz, dx, dy, dz = three[0], three[1], three[2], four[0], four[1], four[2]
     speed_a, speed_b, speed_c, speed_d = one[3], two[3], three[3], four[3]
     for j in range(size):
-        distance = gap + _segment_distance(
+        distance, share = _segment_distance(
             ax[j], ay[j], az[j], bx[j], by[j], bz[j], cx[j], cy[j], cz[j], dx[j], dy[j], dz[j]
         )
+        distance += gap
         change = max(speed_a[j], speed_b[j]) + max(speed_c[j], speed_d[j])
         change = radius[j] * change if radius[j] > 0.0 else 0.0
-        lower[j] = min(lower[j], distance - change)
-        upper[j] = min(upper[j], distance + change)
+        lower[j] = min(lower[j], max(distance - change, gap + nearer[j]))
+        upper[j] = min(upper[j], distance + min(change, share * farther[j]))
         less = distance < least[j]
         which[j] = n if less else which[j]
         least[j] = distance if less else least[j]
+
+
+@compiled_loop
+def _hinge(
+    elbow: Array, upper: float, fore: float, apart: float, radius: Array, size: int,
+    nearer: Array, farther: Array,
+) -> None:  # fmt: skip
+    """What `_pair` needs of an upper arm and its own rod."""
+    speed, least_q, most_v = elbow[SPEED], elbow[LEAST_Q], elbow[MOST_V]
+    for j in range(size):
+        q, v, r = least_q[j], most_v[j], radius[j]
+        nearer[j] = apart * q / math.sqrt(max(q * q + v * v, TINY)) if r > 0.0 else -math.inf
+        farther[j] = r * (1.0 + speed[j] * (1.0 + fore / upper)) if r > 0.0 else math.inf
+
+
+@compiled_loop
+def _far_apart(size: int, nearer: Array, farther: Array) -> None:
+    for j in range(size):
+        nearer[j], farther[j] = -math.inf, math.inf
 
 
 @compiled_loop
@@ -148,9 +188,9 @@ def collisions(
     `radius` is 0. `which` pair it is, at the centre. `lower` is -inf where an arm does not reach
     all of a ball, `upper` then inf."""
     points = np.empty((3, BLOCK))
-    elbows = np.empty((arms.shape[0], 4, BLOCK))
+    elbows = np.empty((arms.shape[0], ELBOW_ROWS, BLOCK))
     ends = np.empty((2 * capsules.shape[0], 4, BLOCK))
-    least = np.empty(BLOCK)
+    least, nearer, farther = np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
     for start in range(0, xyz.shape[0], BLOCK):
         size = min(BLOCK, xyz.shape[0] - start)
         r = radius[start : start + size]
@@ -171,7 +211,16 @@ def collisions(
         for n in range(pairs.shape[0]):
             a, b = pairs[n, 0], pairs[n, 1]
             gap = rest[ROUNDING] - capsules[a, RADIUS] - capsules[b, RADIUS]
-            _pair(ends, a, b, gap, r, size, n, low, high, least, found)
+            if pairs[n, HINGED] == 1:
+                apart, i = 0.0, int(capsules[b, FROM]) - ELBOW
+                for axis in range(1, 4):
+                    side = capsules[b, FROM + axis] - capsules[a, TO + axis]
+                    apart += side * side
+                arm = arms[i]
+                _hinge(elbows[i], arm[UPPER], arm[FORE], math.sqrt(apart), r, size, nearer, farther)
+            else:
+                _far_apart(size, nearer, farther)
+            _pair(ends, a, b, gap, r, size, n, nearer, farther, low, high, least, found)
 
 
 @compiled_loop
@@ -181,7 +230,7 @@ def gaps(
 ) -> None:  # fmt: skip
     """The gap of one pair at each tool tip, mm; infinite where `pair` is negative."""
     point, still = np.empty((3, 1)), np.zeros(1)
-    elbows, ends = np.empty((arms.shape[0], 4, 1)), np.empty((4, 4, 1))
+    elbows, ends = np.empty((arms.shape[0], ELBOW_ROWS, 1)), np.empty((4, 4, 1))
     for k in range(xyz.shape[0]):
         out[k] = math.inf
         if pair[k] >= 0:
@@ -196,6 +245,7 @@ def gaps(
                 _place(capsule[TO:RADIUS], point, 1, elbows, ends[2 * side + 1])
                 out[k] -= capsule[RADIUS]
             a, b, c, d = ends[0, :, 0], ends[1, :, 0], ends[2, :, 0], ends[3, :, 0]
-            out[k] += _segment_distance(
+            distance, _ = _segment_distance(
                 a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2], d[0], d[1], d[2]
             )
+            out[k] += distance

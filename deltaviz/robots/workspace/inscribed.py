@@ -139,7 +139,7 @@ def _proved(
         start = -math.inf if wanted.start is not None else sketch.start
         end = math.inf if whole else sketch.end
         inside = Within(stem, centre, start, end, sketch.thickness)
-        deep = _deepest(margins, box, inside, sketch, tolerance / 4)
+        deep = _deepest(margins, box, inside, sketch, tolerance / 2)
         shrunk = _shrunk(sketch, max(0.0, deep.bound), wanted, deep.point)
         if best is None or shrunk.worth(stem, wanted) > best.worth(stem, wanted):
             best = shrunk

@@ -18,7 +18,7 @@ COARSE = 36  # cells along the longest side
 FINE = 80
 CELLS_PER_TOLERANCE = 16  # of the last level: a finer tolerance wants a finer grid
 MOST_NODES = 8_000_000
-ATTEMPTS = 3  # with half the cell each, where thin corners keep the mesh from the tolerance
+ATTEMPTS = 2  # with half the cell each, where thin corners keep the mesh from the tolerance
 
 
 def levels(

@@ -328,14 +328,37 @@ def _from_limits(p: float, z: float, sign: float, a: ArmNumbers) -> float:
 
 
 @compiled_loop
+def _elbow_change(rho: float, v: float, r: float, a: ArmNumbers) -> float:
+    """How far the elbow may be anywhere in a ball from where it is at its centre, as far as the
+    arm reaches; where it does not reach the centre, from the nearest to reaching.
+
+    θ is the direction of the point from the shoulder less arccos K/ρ, which stays bounded where
+    the arm is straight or folded. K/ρ = (ρ + A/ρ) / 2L with A = v² + L² - l².
+    """
+    twice, extra = 2.0 * a[UPPER], a[UPPER] * a[UPPER] - a[FORE] * a[FORE]
+    narrow, wide = rho - r, rho + r
+    if narrow <= 0.0:
+        return twice
+    inner = max(abs(v) - r, 0.0)
+    least, most = inner * inner + extra, (abs(v) + r) * (abs(v) + r) + extra
+    high = max(narrow + most / narrow, wide + most / wide) / twice
+    turn = min(max(math.sqrt(max(least, 0.0)), narrow), wide)  # where ρ + A/ρ is least
+    low = (turn + least / turn) / twice
+    here = math.acos(min(max((rho + (v * v + extra) / rho) / twice, -1.0), 1.0))
+    opened = math.acos(min(max(low, -1.0), 1.0)) - here
+    closed = here - math.acos(min(max(high, -1.0), 1.0))
+    return a[UPPER] * (math.asin(min(r / rho, 1.0)) + max(opened, closed))
+
+
+@compiled_loop
 def _arm_bounds(
     x: float, y: float, z: float, r: float, arms: Array, rest: Array, off: Array, i: int,
     forearm: Array, found: Array,
 ) -> None:  # fmt: skip
     """Bounds of one arm's margins over a ball of radius `r`: see `bounds`.
 
-    `found` is lower, upper, and the sum of the squared slopes of the forearms' directions;
-    infinite when the arm does not reach all of the ball.
+    `found` is lower, upper, and the sum of the squares of how much the forearms' directions may
+    change.
     """
     count = arms.shape[0]
     a = _numbers(arms, i)
@@ -356,27 +379,25 @@ def _arm_bounds(
             near > r or _from_limits(p, z, -1.0, a) > r
         ):
             found[1] = min(found[1], low + r, high + r)
-    if not (far > r and near > r):
-        found[0], found[2] = -math.inf, math.inf
-        return
     square, twice = a[FORE] * a[FORE], 2.0 * a[UPPER]
-    least = (
-        math.sqrt(
-            (square - (nearest + r) * (nearest + r)) * ((farthest - r) * (farthest - r) - square)
-        )
-        / twice
-    )
+    narrow, wide = max(rho - r, 0.0), rho + r
     if off[5 * count + i] == 0.0:
-        inner = max(nearest - r, 0.0)
-        most = (square - inner * inner) * ((farthest + r) * (farthest + r) - square)
-        most = most / (twice * twice)
-        reserve, scale = rest[TYPE_1_RESERVE], a[TYPE_1_SCALE]
-        narrow, wide = max(rho - r, 0.0), rho + r
-        found[0] = min(found[0], (least * least / (wide * wide) - reserve) * scale)
+        inner, outer = max(nearest - r, 0.0), farthest + r
+        most = (square - inner * inner) * (outer * outer - square) / (twice * twice)
         if most < narrow * narrow:
-            found[1] = min(found[1], (most / (narrow * narrow) - reserve) * scale)
-    slope = 1.0 / a[FORE] + 1.0 / least
-    found[2] += slope * slope
+            reserve, scale = rest[TYPE_1_RESERVE], a[TYPE_1_SCALE]
+            found[1] = min(found[1], (most / max(narrow * narrow, TINY) - reserve) * scale)
+    change = _elbow_change(rho, v, r, a)
+    if far > r and near > r:
+        outer, inner = nearest + r, farthest - r
+        least = math.sqrt((square - outer * outer) * (inner * inner - square)) / twice
+        if off[5 * count + i] == 0.0:
+            reserve, scale = rest[TYPE_1_RESERVE], a[TYPE_1_SCALE]
+            found[0] = min(found[0], (least * least / (wide * wide) - reserve) * scale)
+        change = min(change, r * a[FORE] / least)
+    # A centre out of reach has a forearm of another length, which is then made a unit vector.
+    change = (r + change) / a[FORE] * (1.0 if far >= 0.0 and near >= 0.0 else 2.0)
+    found[2] += change * change
     ux, uy, uz = _forearm(p, v, z, cos, sin, a)
     forearm[3 * i, 0], forearm[3 * i + 1, 0], forearm[3 * i + 2, 0] = ux, uy, uz
 
@@ -399,13 +420,12 @@ def bounds(
             _arm_bounds(
                 point[0, 0], point[1, 0], point[2, 0], r, arms, rest, off, i, forearm, found
             )
-        if found[2] < math.inf:
-            _firmness_margins(forearm, 1, arms, rest, firm[0], firm[1])
-            change = r * rest[TYPE_2_SCALE] * math.sqrt(found[2])
-            for kind in range(2):
-                if off[KINDS * count + kind] == 0.0:
-                    found[0] = min(found[0], firm[kind, 0] - change)
-                    found[1] = min(found[1], firm[kind, 0] + change)
+        _firmness_margins(forearm, 1, arms, rest, firm[0], firm[1])
+        change = rest[TYPE_2_SCALE] * math.sqrt(found[2])
+        for kind in range(2):
+            if off[KINDS * count + kind] == 0.0:
+                found[0] = min(found[0], firm[kind, 0] - change)
+                found[1] = min(found[1], firm[kind, 0] + change)
         _zone_margins(point, 1, rest, zone)
         for column in range(7):
             if off[KINDS * count + 2 + column] == 0.0:

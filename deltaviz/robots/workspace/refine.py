@@ -93,7 +93,8 @@ def _edges_to_cut(
     length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=-1)
     middle = ends.mean(axis=1)
     point, walls, good = _placed(margins, mesh, middle, mesh.walls[edges], length)
-    far = good & (np.linalg.norm(point - middle, axis=-1) > tolerance)
+    off = np.maximum(np.linalg.norm(point - middle, axis=-1), np.abs(margins.least(middle)))
+    far = good & (off > tolerance)
     # A face whose own middle alone is far: by its longest edge.
     lone = np.flatnonzero(~far[of_faces].any(axis=1))
     centre = mesh.vertices[faces[lone]].mean(axis=1)

@@ -57,8 +57,8 @@ class Cylinder:
 
     def __str__(self) -> str:
         return (
-            f"cylinder of diameter {self.diameter:.6g} mm and height {self.height:.6g} mm"
-            f"{_about(self.centre)}, Z {self.floor:.6g} to {self.floor + self.height:.6g} mm"
+            f"cylinder {_mm(self.diameter)} mm across and {_mm(self.height)} mm high"
+            f"{_about(self.centre)}, {_between_heights(self.floor, self.height)}"
         )
 
 
@@ -88,11 +88,10 @@ class Cuboid:
         return np.minimum(across, _between(points, self.floor, self.height))
 
     def __str__(self) -> str:
-        sides = " by ".join(f"{side:.6g}" for side in self.size)
-        return (
-            f"box of {sides} by {self.height:.6g} mm{_about(self.centre)}, "
-            f"Z {self.floor:.6g} to {self.floor + self.height:.6g} mm"
-        )
+        sides = " by ".join(_mm(side) for side in (*self.size, self.height))
+        name = "rectangle" if len(self.size) == 1 else "box"
+        heights = _between_heights(self.floor, self.height)
+        return f"{name} of {sides} mm{_about(self.centre)}, {heights}"
 
 
 @dataclass(frozen=True)
@@ -113,10 +112,8 @@ class Belt:
 
     def __str__(self) -> str:
         along = "xy"[self.axis]
-        return (
-            f"belt {self.width:.6g} mm wide along {along}, "
-            f"Z {self.floor:.6g} to {self.floor + self.height:.6g} mm"
-        )
+        heights = _between_heights(self.floor, self.height)
+        return f"belt {_mm(self.width)} mm wide along {along}, {heights}"
 
 
 @dataclass(frozen=True)
@@ -140,6 +137,15 @@ def _between(points: Array, floor: float, height: float) -> Array:
 
 
 def _about(centre: tuple[float, ...]) -> str:
-    if not any(centre):
+    if not any(round(value, 1) for value in centre):
         return ""
-    return f" about ({', '.join(f'{value:.6g}' for value in centre)})"
+    return f" about ({', '.join(map(_mm, centre))})"
+
+
+def _between_heights(floor: float, height: float) -> str:
+    return f"Z {_mm(floor)} to {_mm(floor + height)} mm" if height else f"at Z {_mm(floor)} mm"
+
+
+def _mm(length: float) -> str:
+    """To a tenth, without trailing zeros."""
+    return f"{round(length, 1) + 0.0:.6g}"

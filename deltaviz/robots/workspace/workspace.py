@@ -52,7 +52,7 @@ class Inscribed:
 class Workspace:
     """The set of tool tips that keep `limits`, in mm. What is asked for is computed then, and kept.
 
-    `tolerance` is the boundary's; extents and what fits are found to a tenth of it.
+    `tolerance` is the boundary's; extents and what fits are found to a quarter of it.
     """
 
     robot: Robot
@@ -88,7 +88,7 @@ class Workspace:
 
     @cached_property
     def extents(self) -> Box:
-        """Each side at most a tenth of the tolerance inside the true one, as is proved."""
+        """Each side at most a quarter of the tolerance inside the true one, as is proved."""
         found = extents(self.margins, self.box, tolerance=self.fine)
         if found is None:
             raise Empty(self.reason)
@@ -103,7 +103,7 @@ class Workspace:
 
     @property
     def fine(self) -> float:
-        return self.tolerance / 10
+        return self.tolerance / 4
 
     def field(self, cell: float) -> Field:
         """Margins at the nodes of a grid, at whole multiples of `cell` mm."""
