@@ -87,7 +87,7 @@ class Cells:
     def beyond(self, box: Box) -> Flags:
         """Which are not wholly within it."""
         low, high = self.centres - self.half, self.centres + self.half
-        return ((low < box.low) | (high > box.high)).any(axis=1)
+        return np.asarray(((low < box.low) | (high > box.high)).any(axis=1))
 
     @property
     def hull(self) -> Box:
