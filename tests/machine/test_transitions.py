@@ -85,7 +85,7 @@ def test_the_picture_shows_every_change_of_mode_and_no_other() -> None:
         match = re.fullmatch(r"    (\w+) --> (\w+): (.+)", line)
         if match is None:
             continue
-        for label in match[3].split(", "):
+        for label in match[3].split(" / "):
             exception = re.search(r" \(not (\w+)\)$", label)
             event = label[: exception.start()] if exception else label
             sources = [match[1]] if match[1] != "any_mode" else [m.value for m in Mode]
