@@ -189,11 +189,11 @@ CONTRADICTIONS: list[tuple[Callable[[Robot], Robot], str]] = [
         "joint 3 would brake for 3.0 s, and 1 s is the most",
     ),
     (
-        lambda r: replace(r, homing=replace(r.homing, max_travel=3000.0)),
+        lambda r: replace(r, homing=replace(r.homing, max_travel=(3000.0,) * 3)),
         "joint 1 would home 1527887 microsteps far, and 1048576 is the most",
     ),
     (
-        lambda r: replace(r, homing=replace(r.homing, slow=0.001)),
+        lambda r: replace(r, homing=replace(r.homing, slow=(0.001,) * 3)),
         "joint 1 would home for 50 minutes, and 10 are the most",
     ),
 ]
