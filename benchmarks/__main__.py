@@ -15,14 +15,21 @@ from pathlib import Path
 
 PAGE = Path(__file__).parents[1] / "docs" / "measurements.md"
 BENCHMARKS = {
-    "startup": ("Start-up", ["--rounds", "2"]),
-    "kinematics": ("Inverse and forward for a million poses, against scalar C", ["--rounds", "3"]),
-    "follower": ("One tick of the follower", ["--ticks", "200"]),
-    "loop": ("The control loop, alone and on busy cores", ["--seconds", "5"]),
-    "watched_loop": ("The control loop while browsers watch", ["--seconds", "5"]),
-    "dragged": ("The link while browsers watch and one drags", ["--seconds", "10"]),
-    "link": ("The link: round trip, and the cost of a capture", ["--seconds", "5"]),
-    "latency": ("Pointer to step", ["--moves", "10"]),
+    "startup": ("Start-up", ["startup", "--rounds", "2"]),
+    "kinematics": (
+        "Inverse and forward for a million poses, against scalar C",
+        ["kinematics", "--rounds", "3"],
+    ),
+    "follower": ("One tick of the follower", ["follower", "--ticks", "200"]),
+    "loop": ("The control loop, alone and on busy cores", ["loop", "--seconds", "5"]),
+    "watched_loop": ("The control loop while browsers watch", ["watched_loop", "--seconds", "5"]),
+    "dragged": ("The link while browsers watch and one drags", ["dragged", "--seconds", "10"]),
+    "link": ("The link: round trip, and the cost of a capture", ["link", "--seconds", "5"]),
+    "latency": ("Pointer to step, simulated board", ["latency", "--moves", "10"]),
+    "latency_emulated": (
+        "Pointer to step, the real firmware in the emulator",
+        ["latency", "--moves", "10", "--link", "emulate://"],
+    ),
 }
 HEAD = """# Measurements
 
@@ -43,8 +50,8 @@ def main() -> int:
     sections = dict(read(PAGE.read_text())) if PAGE.exists() else {}
     failed = False
     for name in sys.argv[1:] or BENCHMARKS:
-        title, arguments = BENCHMARKS[name]
-        command = [sys.executable, "-m", f"benchmarks.{name}", *arguments]
+        title, (module, *arguments) = BENCHMARKS[name]
+        command = [sys.executable, "-m", f"benchmarks.{module}", *arguments]
         done = subprocess.run(command, stdout=subprocess.PIPE, text=True, cwd=PAGE.parents[1])
         if done.returncode:
             print(f"benchmarks.{name} failed", file=sys.stderr)
