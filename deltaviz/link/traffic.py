@@ -11,6 +11,9 @@ from deltaviz.link.wire.errors import Malformed
 from deltaviz.link.wire.frames import ENCODED_MAX, Frame, decode_frame
 
 
+_TEXT = frozenset(b"\t\r\n") | frozenset(range(0x20, 0x7F))
+
+
 class Sender(StrEnum):
     HOST = "host"
     BOARD = "board"
@@ -45,7 +48,7 @@ class Direction:
     def feed(self, data: bytes, at: float) -> list[Said | Garbage]:
         *ended, self._partial = (self._partial + data).split(b"\0")
         heard = [self._read(encoded, at) for encoded in ended if encoded]
-        if len(self._partial) > ENCODED_MAX or self._partial.endswith(b"\n"):
+        if len(self._partial) > ENCODED_MAX or _is_text(self._partial):
             heard.append(Garbage(at, self._sender or Sender.BOARD, self._partial))
             self._partial = b""
         return heard
@@ -60,6 +63,12 @@ class Direction:
             return Said(at, sender, frame.sequence, decode(frame.type, frame.payload))
         except Malformed:
             return Garbage(at, sender, encoded)
+
+
+def _is_text(data: bytes) -> bool:
+    """Whole lines as a device prints that speaks no frames. A frame may be cut behind a byte that
+    is a line's end, but its type and lengths are no text."""
+    return data.endswith(b"\n") and all(byte in _TEXT for byte in data)
 
 
 def _sender_of(frame: Frame | None) -> Sender:

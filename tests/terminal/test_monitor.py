@@ -7,6 +7,7 @@ import re
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -14,12 +15,35 @@ import pytest
 from deltaviz.cli import main
 from deltaviz.link.capture.reader import read_capture
 from deltaviz.link.capture.records import Kind, Record, head, write_record
-from deltaviz.link.messages import Hello, Stop
+from deltaviz.link.messages import (
+    BoardState,
+    EStop,
+    Fault,
+    Hello,
+    HostMessage,
+    Inputs,
+    Stop,
+    Telemetry,
+    TelemetryFlags,
+)
 from deltaviz.link.traffic import Direction, Garbage, Said, Sender
 from deltaviz.link.wire.codec import encode
 from deltaviz.link.wire.frames import FrameReader, write_frame
 from tests.link.cable import PATIENCE, Cable
 from tests.link.capture.make import KEPT
+
+TELEMETRY = Telemetry(
+    now=0,
+    state=BoardState.DISABLED,
+    fault=Fault.NONE,
+    epoch=0,
+    last_index=0,
+    t_queue_end=0,
+    free=64,
+    inputs=Inputs(0),
+    flags=TelemetryFlags(0),
+    counts=(0, 0, 0),
+)
 
 
 def run(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, list[str], str]:
@@ -205,6 +229,26 @@ def test_garbage_between_frames_is_shown_and_costs_no_message() -> None:
     endless = [item for _ in range(100) for item in line.feed(b"\x55" * 100, 3.0)]
     assert sum(len(item.data) for item in endless if isinstance(item, Garbage)) > 9000
     assert line.feed(b"\0" + stop, 4.0)[-1] == Said(4.0, Sender.HOST, 0, Stop())
+
+
+@pytest.mark.parametrize("at", range(1, 39))
+@pytest.mark.parametrize("sender", [Sender.BOARD, None])
+def test_a_frame_may_arrive_in_two_parts_wherever_it_is_cut(sender: Sender | None, at: int) -> None:
+    """As it does through sockets; its bytes may well be a line's end."""
+    newline = 0x0A0A0A0A
+    telemetry = replace(TELEMETRY, now=newline, counts=(newline,) * 3)
+    frame = write_frame(*_frame(telemetry, 10))
+    line = Direction(sender)
+    assert line.feed(frame[:at], 1.0) == []
+    assert line.feed(frame[at:], 2.0) == [Said(2.0, Sender.BOARD, 10, telemetry)]
+
+
+@pytest.mark.parametrize("message", [Stop(), EStop(), Hello(version=10)])
+def test_no_frame_of_a_host_begins_like_a_line_of_text(message: HostMessage) -> None:
+    for sequence in range(256):
+        frame = write_frame(*_frame(message, sequence))
+        for at in range(1, len(frame)):
+            assert Direction(Sender.HOST).feed(frame[:at], 0.0) == []
 
 
 def test_a_host_does_not_say_what_only_boards_say() -> None:
