@@ -365,6 +365,35 @@ def _monitor(options: argparse.Namespace) -> int:
         return FAILED
 
 
+def _add_verify(parser: argparse.ArgumentParser) -> None:
+    _add_robot(parser)
+    parser.add_argument(
+        "--poses", type=_count, default=20_000, metavar="N", help="how many poses to try (20000)"
+    )
+    parser.add_argument("--seed", type=int, default=0, metavar="N", help="which poses (0)")
+    _add_json(parser)
+    parser.set_defaults(run=_verify)
+
+
+def _count(text: str) -> int:
+    if not text.strip().isdecimal() or not 1 <= int(text) <= 10_000_000:
+        raise argparse.ArgumentTypeError(f"{text!r}: use a number from 1 to 10000000")
+    return int(text)
+
+
+def _verify(options: argparse.Namespace) -> int:
+    robot = _load(options.robot)
+    if options.seed < 0:
+        raise UsageError("--seed must be at least 0")
+
+    from deltaviz.robots.verification import verify
+    from deltaviz.terminal import verify as terminal
+
+    found = verify(robot, poses=options.poses, seed=options.seed)
+    print((terminal.as_json if options.json else terminal.text)(found))
+    return OK if found.agrees else FAILED
+
+
 def _load(name: str) -> Robot:
     from deltaviz.robots import RobotFileError, load_robot
 
@@ -379,6 +408,7 @@ _COMMANDS: dict[str, tuple[Callable[[argparse.ArgumentParser], None], str]] = {
     "ik": (_add_ik, "Joint angles for a tool tip position."),
     "fk": (_add_fk, "Tool tip position for joint angles."),
     "workspace": (_add_workspace, "What a robot reaches, how well, and what fits inside."),
+    "verify": (_add_verify, "Whether the kinematics agrees with itself and with other methods."),
     "robots": (_add_robots, "The robots that come with deltaviz."),
     "ports": (_add_ports, "Serial ports, with what they are, and which of them has a board."),
     "emulate": (_add_emulate, "The real firmware in QEMU, as a board to connect to."),
