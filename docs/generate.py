@@ -153,6 +153,12 @@ def firmware() -> str:
     return firmware_tables.measured()
 
 
+def corrections() -> str:
+    from source_tables.corrections import corrections
+
+    return corrections()
+
+
 _EXAMPLE = (
     "Hello", "HelloReply", "Configure", "Configured", "Telemetry", "Enable", "Done", "Arm",
     "Segment", "Keep", "Stop", "Stopped", "Refused",
@@ -177,6 +183,7 @@ BLOCKS: dict[str, Callable[[], str]] = {
     "pins": pins,
     "step-timing": step_timing,
     "firmware": firmware,
+    "corrections": corrections,
 }
 
 

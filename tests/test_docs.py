@@ -6,11 +6,19 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).parents[1]
 
 
 def test_the_generated_parts_are_todays() -> None:
     check = [sys.executable, ROOT / "docs" / "generate.py", "--check"]
+    done = subprocess.run(check, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_the_figures_are_todays() -> None:
+    check = [sys.executable, ROOT / "docs" / "figures.py", "--check"]
     done = subprocess.run(check, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
 
@@ -26,7 +34,8 @@ def test_a_stale_part_is_seen(tmp_path: Path) -> None:
     assert "architecture.md" in done.stdout
 
 
-def test_every_picture_and_page_that_is_linked_exists() -> None:
-    text = (ROOT / "README.md").read_text()
+@pytest.mark.parametrize("page", ["README.md", "docs/kinematics.md"])
+def test_every_picture_and_page_that_is_linked_exists(page: str) -> None:
+    text = (ROOT / page).read_text()
     for link in (part.split(")")[0] for part in text.split("](")[1:]):
-        assert (ROOT / link).exists(), link
+        assert ((ROOT / page).parent / link).exists(), link
