@@ -6,6 +6,7 @@ python docs/generate.py --check  status 1 and the names of the pages that are no
 
 from __future__ import annotations
 
+import importlib
 import json
 import re
 import sys
@@ -153,10 +154,11 @@ def firmware() -> str:
     return firmware_tables.measured()
 
 
-def corrections() -> str:
-    from source_tables.corrections import corrections
+def of_source(name: str, function: str = "tables") -> Callable[[], str]:
+    def made() -> str:
+        return getattr(importlib.import_module(f"source_tables.{name}"), function)()
 
-    return corrections()
+    return made
 
 
 _EXAMPLE = (
@@ -183,7 +185,14 @@ BLOCKS: dict[str, Callable[[], str]] = {
     "pins": pins,
     "step-timing": step_timing,
     "firmware": firmware,
-    "corrections": corrections,
+    "corrections": of_source("corrections"),
+    "trossen": of_source("trossen"),
+    "firestep": of_source("trossen", "firestep"),
+    "zheng-chen": of_source("zheng_chen"),
+    "drawing-robot": of_source("drawing_robot"),
+    "stm32-scan": of_source("stm32"),
+    "solved-poses": of_source("reference"),
+    "certificates": of_source("reference", "certificates"),
 }
 
 

@@ -7,7 +7,7 @@ import math
 from source_tables import mistakes
 
 
-def corrections() -> str:
+def tables() -> str:
     missed, exact, lost = mistakes.rounded_tan30()
     whole, too_long = (mistakes.lean_ignored(planar=planar) for planar in (True, False))
     rows = [

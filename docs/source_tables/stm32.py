@@ -1,17 +1,85 @@
-"""The STM32F407 library's numbers."""
+"""The STM32F407 library's scan and forward solution."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
+from deltaviz import load_robot
 from deltaviz.mechanism import RotaryDelta
+from deltaviz.mechanism.published import legs_of, newton
+from source_tables.comparison import Row, agreement, table
+
+CAP = 250.0  # mm from the axis: what the scan leaves out
+HEIGHTS = {-460: 14.1, -440: 103.0, -400: 192.4, -360: 247.0, -100: 247.0}
 
 
 def scan(robot: RotaryDelta) -> tuple[np.ndarray, np.ndarray]:
     """Its scan: (m, 3) mm and (m, 3) rad, the points of its grid that the links reach."""
     axis, height = np.arange(-250.0, 251.0, 20.0), np.arange(-460.0, -99.0, 20.0)
     points = np.stack(np.meshgrid(axis, axis, height, indexing="ij"), axis=-1).reshape(-1, 3)
-    points = points[np.hypot(points[:, 0], points[:, 1]) <= 250]
+    points = points[np.hypot(points[:, 0], points[:, 1]) <= CAP]
     theta = robot.inverse(points)
     reached = np.isfinite(theta).all(axis=-1)
     return points[reached], theta[reached]
+
+
+def rows() -> Iterable[Row]:
+    robot = _robot()
+    xyz, theta = scan(robot)
+    inside = ((theta >= np.radians(-45)) & (theta <= np.radians(90))).all(axis=-1)
+    radius = np.hypot(xyz[:, 0], xyz[:, 1])
+    yield Row("points of the grid within reach", 5928, len(xyz), 0.5)
+    yield Row("of them with joints from −45° to 90°", 3786, int(inside.sum()), 0.5)
+    for z, theirs in HEIGHTS.items():
+        ours = radius[xyz[:, 2] == z].max()
+        yield Row(f"largest radius of the grid at z = {z}", theirs, ours, 0.05, " mm")
+    yield Row("least angle in the scan", -150, np.degrees(theta.min()), 0.5, "°")
+    yield Row("greatest angle", 119, np.degrees(theta.max()), 0.5, "°")
+    low, high = _centre(robot)
+    yield Row("lowest place on the axis", -461.3, low, 0.05, " mm")
+    yield Row("highest place on the axis", -209.2, high, 0.05, " mm")
+    around, farthest = _reach(robot, -120.0)
+    cap = "the scan leaves out what is further from the axis"
+    yield Row("its reach: at z = −120, the farthest point", 250, farthest, 0.5, " mm", cap)
+    yield Row("at z = −120, all around", 250, around, 0.5, " mm", cap)
+
+
+def tables() -> str:
+    robot = _robot()
+    xyz, theta = scan(robot)
+    apart = np.abs(newton(legs_of(robot), theta) - robot.forward(theta)).max()
+    newtons = ("Newton's method and the closed form, over the scan", apart, 1e-9, " mm")
+    back = ("forward(inverse(p)) and p, over the scan", np.abs(robot.forward(theta) - xyz).max())
+    return f"{table(rows())}\n\n{agreement([newtons, (*back, 1e-9, ' mm')])}"
+
+
+def _centre(robot: RotaryDelta) -> tuple[float, float]:
+    """Lowest and highest reached z on the axis, to 1e-6 mm."""
+    ends = []
+    for outside, inside in ((-600.0, -300.0), (-100.0, -300.0)):
+        while abs(outside - inside) > 1e-6:
+            middle = (outside + inside) / 2
+            reached = bool(np.isfinite(robot.inverse([0, 0, middle])).all())
+            outside, inside = (outside, middle) if reached else (middle, inside)
+        ends.append(inside)
+    return ends[0], ends[1]
+
+
+def _reach(robot: RotaryDelta, z: float) -> tuple[float, float]:
+    """mm, to 0.5 mm, at this height: the largest ring that the links reach all around the axis,
+    and the farthest point in any direction."""
+    turn = np.radians(np.arange(0, 360, 1.0))
+    radius = np.arange(200.0, 500.0, 0.5)
+    across = radius[:, None, None] * np.stack((np.cos(turn), np.sin(turn)), axis=-1)
+    points = np.concatenate((across, np.full((*across.shape[:-1], 1), z)), axis=-1)
+    reached = np.isfinite(robot.inverse(points)).all(axis=-1)
+    all_around, anywhere = reached.all(axis=-1), reached.any(axis=-1)
+    return float(radius[all_around].max()), float(radius[anywhere].max())
+
+
+def _robot() -> RotaryDelta:
+    robot = load_robot("stm32").mechanism
+    assert isinstance(robot, RotaryDelta)
+    return robot
