@@ -394,6 +394,20 @@ def _verify(options: argparse.Namespace) -> int:
     return OK if found.agrees else FAILED
 
 
+def _add_compare(parser: argparse.ArgumentParser) -> None:
+    from deltaviz.terminal import compare
+
+    compare.add_arguments(parser)
+    _add_json(parser)
+    parser.set_defaults(run=_compare)
+
+
+def _compare(options: argparse.Namespace) -> int:
+    from deltaviz.terminal import compare
+
+    return compare.run(_load(options.first), _load(options.second), options)
+
+
 def _load(name: str) -> Robot:
     from deltaviz.robots import RobotFileError, load_robot
 
@@ -409,6 +423,7 @@ _COMMANDS: dict[str, tuple[Callable[[argparse.ArgumentParser], None], str]] = {
     "fk": (_add_fk, "Tool tip position for joint angles."),
     "workspace": (_add_workspace, "What a robot reaches, how well, and what fits inside."),
     "verify": (_add_verify, "Whether the kinematics agrees with itself and with other methods."),
+    "compare": (_add_compare, "Two robots side by side: reach, precision, torque."),
     "robots": (_add_robots, "The robots that come with deltaviz."),
     "ports": (_add_ports, "Serial ports, with what they are, and which of them has a board."),
     "emulate": (_add_emulate, "The real firmware in QEMU, as a board to connect to."),
