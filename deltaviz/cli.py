@@ -408,6 +408,28 @@ def _compare(options: argparse.Namespace) -> int:
     return compare.run(_load(options.first), _load(options.second), options)
 
 
+def _add_design(parser: argparse.ArgumentParser) -> None:
+    from deltaviz.terminal.design_options import add_arguments
+
+    parser.add_argument(
+        "--robot",
+        default="stm32",
+        metavar="NAME|FILE",
+        help="whose joints, limits, drive and effector it has (stm32)",
+    )
+    add_arguments(parser)
+    _add_json(parser)
+    parser.set_defaults(run=_design)
+
+
+def _design(options: argparse.Namespace) -> int:
+    from deltaviz.robots.load import robot_text
+    from deltaviz.terminal import design
+
+    template = _load(options.robot)
+    return design.run(template, robot_text(options.robot)[0], options)
+
+
 def _load(name: str) -> Robot:
     from deltaviz.robots import RobotFileError, load_robot
 
@@ -424,6 +446,7 @@ _COMMANDS: dict[str, tuple[Callable[[argparse.ArgumentParser], None], str]] = {
     "workspace": (_add_workspace, "What a robot reaches, how well, and what fits inside."),
     "verify": (_add_verify, "Whether the kinematics agrees with itself and with other methods."),
     "compare": (_add_compare, "Two robots side by side: reach, precision, torque."),
+    "design": (_add_design, "Lengths that reach what is wanted, as a robot file."),
     "robots": (_add_robots, "The robots that come with deltaviz."),
     "ports": (_add_ports, "Serial ports, with what they are, and which of them has a board."),
     "emulate": (_add_emulate, "The real firmware in QEMU, as a board to connect to."),

@@ -23,12 +23,19 @@ def load_robot(robot: str | os.PathLike[str]) -> Robot:
 
     Raises RobotFileError, which names the field, its value, the line and what would be legal.
     """
+    text, source = robot_text(robot)
+    return parse_robot(text, source=source)
+
+
+def robot_text(robot: str | os.PathLike[str]) -> tuple[str, str]:
+    """The text of a preset or a robot file, and what to call it in errors. Raises RobotFileError if
+    there is none."""
     name = os.fspath(robot)
     if _is_path(name) or not isinstance(robot, str):
-        return parse_robot(_read(name), source=name)
+        return _read(name), name
     if name not in preset_names():
         raise RobotFileError(_unknown_preset(name))
-    return parse_robot(preset_text(name), source=f"preset {name}")
+    return preset_text(name), f"preset {name}"
 
 
 def parse_robot(text: str, *, source: str = "robot file") -> Robot:
