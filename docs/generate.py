@@ -190,7 +190,9 @@ BLOCKS: dict[str, Callable[[], str]] = {
     "firestep": of_source("trossen", "firestep"),
     "zheng-chen": of_source("zheng_chen"),
     "drawing-robot": of_source("drawing_robot"),
+    "letter-paper": of_source("drawing_robot", "paper"),
     "stm32-scan": of_source("stm32"),
+    "stm32-reach": of_source("stm32", "reach"),
     "solved-poses": of_source("reference"),
     "certificates": of_source("reference", "certificates"),
 }

@@ -9,6 +9,7 @@ import numpy as np
 from deltaviz import load_robot
 from deltaviz.mechanism import RotaryDelta
 from deltaviz.mechanism.published import legs_of, newton
+from deltaviz.robots.workspace import Limit
 from source_tables.comparison import Row, agreement, table
 
 CAP = 250.0  # mm from the axis: what the scan leaves out
@@ -40,10 +41,31 @@ def rows() -> Iterable[Row]:
     low, high = _centre(robot)
     yield Row("lowest place on the axis", -461.3, low, 0.05, " mm")
     yield Row("highest place on the axis", -209.2, high, 0.05, " mm")
-    around, farthest = _reach(robot, -120.0)
-    cap = "the scan leaves out what is further from the axis"
-    yield Row("its reach: at z = −120, the farthest point", 250, farthest, 0.5, " mm", cap)
-    yield Row("at z = −120, all around", 250, around, 0.5, " mm", cap)
+
+
+def reach() -> str:
+    """At each height: the scan's largest radius, and where reach ends by the boundary."""
+    xyz, _ = scan(_robot())
+    radius = np.hypot(xyz[:, 0], xyz[:, 1])
+    heights = sorted({*HEIGHTS, -300, -200, -120}, reverse=True)
+    robot = load_robot("stm32")
+    links = robot.workspace(Limit.REACH).reach(heights)
+    limited = robot.workspace().reach(heights)
+    lines = [
+        "| z | the scan's radius | farthest | all around | nearest | farthest, all limits "
+        "| all around, all limits |",
+        "| ---: | ---: | ---: | ---: | ---: | ---: | ---: |",
+    ]
+    for z, all_, own in zip(heights, links, limited, strict=True):
+        of_scan = radius[xyz[:, 2] == z].max()
+        cells = (of_scan, all_.farthest, all_.all_around, all_.nearest, own.farthest)
+        shown = [_mm(cell) for cell in (*cells, own.all_around)]
+        lines.append(f"| {z} | ".replace("-", "−") + " | ".join(shown) + " |")
+    return "\n".join(lines)
+
+
+def _mm(value: float | None) -> str:
+    return "none" if value is None else f"{value:.0f}"
 
 
 def tables() -> str:
@@ -65,18 +87,6 @@ def _centre(robot: RotaryDelta) -> tuple[float, float]:
             outside, inside = (outside, middle) if reached else (middle, inside)
         ends.append(inside)
     return ends[0], ends[1]
-
-
-def _reach(robot: RotaryDelta, z: float) -> tuple[float, float]:
-    """mm, to 0.5 mm, at this height: the largest ring that the links reach all around the axis,
-    and the farthest point in any direction."""
-    turn = np.radians(np.arange(0, 360, 1.0))
-    radius = np.arange(200.0, 500.0, 0.5)
-    across = radius[:, None, None] * np.stack((np.cos(turn), np.sin(turn)), axis=-1)
-    points = np.concatenate((across, np.full((*across.shape[:-1], 1), z)), axis=-1)
-    reached = np.isfinite(robot.inverse(points)).all(axis=-1)
-    all_around, anywhere = reached.all(axis=-1), reached.any(axis=-1)
-    return float(radius[all_around].max()), float(radius[anywhere].max())
 
 
 def _robot() -> RotaryDelta:

@@ -1,14 +1,19 @@
-"""Zheng and Chen's machine: its cylinder, and ours."""
+"""Zheng and Chen's machine: its extents, its cylinder, and ours."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
+from dataclasses import replace
 
 import numpy as np
 
+from deltaviz import load_robot
 from deltaviz.mechanism import RotaryDelta
+from deltaviz.robots.workspace import Belt, Cylinder, Limit, Workspace
 from source_tables.comparison import Row, table
 
+BELT = 800.0  # mm wide
 ROBOT = RotaryDelta(base_radius=260, effector_radius=50, upper_arm=360, forearm=900)
 
 
@@ -27,7 +32,46 @@ def cylinder_rows() -> Iterable[Row]:
 
 
 def tables() -> str:
-    return table(cylinder_rows())
+    return "\n\n".join(table(rows) for rows in (extent_rows(), cylinder_rows(), largest_rows()))
+
+
+def extent_rows() -> Iterable[Row]:
+    """What its figures 4 to 8 plot: all that the links and joints from -47° to 88° reach."""
+    box = _reached(-47, 88).extents
+    (x0, y0, z0), (x1, y1, z1) = box.low.tolist(), box.high.tolist()
+    arms = "arms 120° apart cannot reach equally far to both sides in x"
+    yield Row("x from", -680, x0, 0.5, " mm", arms)
+    yield Row("x to", 680, x1, 0.5, " mm", arms)
+    yield Row("y from", -680, y0, 0.5, " mm")
+    yield Row("y to", 680, y1, 0.5, " mm")
+    yield Row("z from", -1230, z0, 5, " mm")
+    yield Row("z to", -410, z1, 5, " mm")
+
+
+def largest_rows() -> Iterable[Row]:
+    within = _reached(-45, 90)
+    found = within.largest_cylinder(height=260)
+    assert found is not None
+    assert isinstance(found.shape, Cylinder)
+    yield Row(
+        "the widest cylinder 260 mm high, joints from −45° to 90°", 1010, found.shape.diameter, 5,
+        " mm", f"proved: none above {found.most:.0f} mm",
+    )  # fmt: skip
+    yield Row("where it stands: z", -906, found.shape.floor, 0.5, " mm")
+    theirs = _reached(-51.06, 85.94).serve(Belt(BELT, 160, -780))
+    chord = 2 * math.sqrt(560**2 - (BELT / 2) ** 2)
+    yield Row(
+        f"a conveyor {BELT:g} mm wide through their cylinder: stretch that is served", chord,
+        theirs.length, 0.5, " mm", "theirs is the cylinder's chord; a belt need not be round",
+    )  # fmt: skip
+
+
+def _reached(low_deg: float, high_deg: float) -> Workspace:
+    robot = load_robot("zheng2023")
+    joints = replace(
+        robot.joints, min=(math.radians(low_deg),) * 3, max=(math.radians(high_deg),) * 3
+    )
+    return replace(robot, joints=joints).workspace(Limit.REACH | Limit.JOINTS)
 
 
 def _over_cylinder(diameter: float, bottom: float, top: float) -> tuple[float, float, float]:
