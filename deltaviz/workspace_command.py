@@ -9,6 +9,8 @@ import os
 import sys
 from typing import TYPE_CHECKING, Any
 
+from deltaviz.terminal.numbers import finite, not_negative, positive
+
 if TYPE_CHECKING:  # the command line starts before the layers it needs are known
     from deltaviz.robots import Robot
     from deltaviz.robots.workspace import Belt, Inscribed, Limit, Workspace
@@ -26,32 +28,32 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help=f"what ends the workspace, of {','.join(LIMITS)} (all but zone; reach always counts)",
     )  # fmt: skip
     parser.add_argument(
-        "--resolution", type=_positive, metavar="MM",
+        "--resolution", type=positive, metavar="MM",
         help="how near the boundary is to the true one (1); spacing of the CSV's points (10)",
     )  # fmt: skip
     parser.add_argument(
-        "--at", type=_finite, metavar="Z", help="height of the floor that shapes stand on, mm"
+        "--at", type=finite, metavar="Z", help="height of the floor that shapes stand on, mm"
     )
     parser.add_argument(
         "--anywhere", action="store_true", help="shapes need not stand about the vertical axis"
     )
     parser.add_argument(
-        "--cylinder", nargs=2, type=_positive, metavar=("D", "H"),
+        "--cylinder", nargs=2, type=positive, metavar=("D", "H"),
         help="does a cylinder of this diameter and height fit?",
     )  # fmt: skip
     parser.add_argument(
-        "--box", nargs="+", type=_positive, metavar="MM",
+        "--box", nargs="+", type=positive, metavar="MM",
         help="does a box W D H fit? (W H in a plane) W lies along x",
     )  # fmt: skip
     parser.add_argument(
-        "--belt", nargs="+", type=_positive, metavar="MM",
+        "--belt", nargs="+", type=positive, metavar="MM",
         help="which stretch of a belt W wide is reached over all its width, and up to H above it?",
     )  # fmt: skip
     parser.add_argument(
         "--along", choices=("x", "y"), default="x", help="direction of the belt (x)"
     )
     parser.add_argument(
-        "--payload", type=_not_negative, default=0.0, metavar="KG", help="for the torques (0)"
+        "--payload", type=not_negative, default=0.0, metavar="KG", help="for the torques (0)"
     )
     parser.add_argument("--plot", metavar="FILE", help="write pictures (.png, .svg, .pdf)")
     parser.add_argument(
@@ -344,27 +346,3 @@ def _limits(text: str) -> tuple[str, ...]:
         if name not in LIMITS:
             raise argparse.ArgumentTypeError(f"{name!r} is none of {', '.join(LIMITS)}")
     return names
-
-
-def _finite(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise argparse.ArgumentTypeError(f"{text.strip()!r} is no finite number")
-    return value
-
-
-def _positive(text: str) -> float:
-    value = _finite(text)
-    if value <= 0:
-        raise argparse.ArgumentTypeError(f"{text.strip()} must be greater than 0")
-    return value
-
-
-def _not_negative(text: str) -> float:
-    value = _finite(text)
-    if value < 0:
-        raise argparse.ArgumentTypeError(f"{text.strip()} must be at least 0")
-    return value

@@ -10,7 +10,6 @@ from deltaviz.link.wire.codec import decode_board, decode_host
 from deltaviz.link.wire.errors import Malformed
 from deltaviz.link.wire.frames import ENCODED_MAX, Frame, decode_frame
 
-
 _TEXT = frozenset(b"\t\r\n") | frozenset(range(0x20, 0x7F))
 
 
