@@ -147,7 +147,10 @@ def test_ports_never_fails(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_the_command_starts_without_the_heavy_libraries() -> None:
-    watched = "numba", "viser", "fastapi", "ruckig", "serial"
+    watched = (
+        *("numba", "viser", "fastapi", "ruckig", "serial"),
+        *("scipy", "skimage", "matplotlib", "distributed", "tqdm"),
+    )
     code = (
         "import sys; from deltaviz.cli import main; main(['ik', '0', '0', '-300', '--json']);"
         f"print([m for m in {watched} if m in sys.modules], file=sys.stderr)"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import contextlib
 import json
+import math
 import os
 import sys
 from collections.abc import Callable, Iterator
@@ -15,7 +16,7 @@ from deltaviz.terminal.design_options import WrongWish, ranges, wish
 
 if TYPE_CHECKING:
     from deltaviz.robots import Robot
-    from deltaviz.robots.design import Designed, Lengths, Ranges, Wish
+    from deltaviz.robots.design import Designed, Lengths, Preference, Ranges, Wish
     from deltaviz.robots.design.search import Mapper
 
 OK, FAILED, BAD_USAGE = 0, 1, 2
@@ -63,7 +64,10 @@ def _designed(
 
     task = Task(template, wished, Preference(options.prefer), options.grain, options.reserve)
     try:
-        with _mapper(options) as mapper, _progress(options.generations) as progress:
+        with (
+            _mapper(options) as mapper,
+            _progress(options.generations, task.preference) as progress,
+        ):
             designed = design(
                 task,
                 sizes,
@@ -121,7 +125,7 @@ def _mapper(options: argparse.Namespace) -> Iterator[Mapper]:
 
 
 @contextlib.contextmanager
-def _progress(generations: int) -> Iterator[Callable[[int, float], None]]:
+def _progress(generations: int, preference: Preference) -> Iterator[Callable[[int, float], None]]:
     """A bar on stderr, if a person looks at it."""
     from tqdm import tqdm
 
@@ -130,17 +134,19 @@ def _progress(generations: int) -> Iterator[Callable[[int, float], None]]:
     def told(generation: int, best: float) -> None:
         if generation < bar.n:  # another round, with a larger reserve
             bar.reset()
-        bar.set_postfix_str(_best(best), refresh=False)
+        bar.set_postfix_str(_best(best, preference), refresh=False)
         bar.update(generation - bar.n)
 
     with bar:
         yield told
 
 
-def _best(score: float) -> str:
+def _best(score: float, preference: Preference) -> str:
     from deltaviz.robots.design.score import UNREACHED
 
-    return f"misses by {score - UNREACHED:.1f} mm" if score >= UNREACHED else f"score {score:.3f}"
+    if score >= UNREACHED:
+        return f"misses by {score - UNREACHED:.1f} mm"
+    return f"worst {' x '.join(preference.measures)} {math.exp(score):.3g}"
 
 
 def text(designed: Designed, out: Path) -> str:

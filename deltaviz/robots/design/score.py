@@ -28,13 +28,14 @@ class Preference(Enum):
     CONDITIONING = "conditioning"
     RESOLUTION = "resolution"
 
+    @property
+    def measures(self) -> tuple[str, ...]:
+        return ("conditioning", "resolution") if self is Preference.BOTH else (self.value,)
+
     def of(self, condition: float, resolution: float) -> float:
-        logs = {
-            Preference.BOTH: (condition, resolution),
-            Preference.CONDITIONING: (condition,),
-            Preference.RESOLUTION: (resolution,),
-        }[self]
-        return sum(math.log(value) for value in logs)
+        """The logarithm of the measure, or of their product."""
+        values = {"conditioning": condition, "resolution": resolution}
+        return sum(math.log(values[name]) for name in self.measures)
 
 
 @dataclass(frozen=True)
