@@ -195,6 +195,8 @@ BLOCKS: dict[str, Callable[[], str]] = {
     "stm32-reach": of_source("stm32", "reach"),
     "solved-poses": of_source("reference"),
     "certificates": of_source("reference", "certificates"),
+    "rods": of_source("models", "rods"),
+    "calibration": of_source("models", "calibration"),
 }
 
 
