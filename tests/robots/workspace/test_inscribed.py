@@ -1,0 +1,212 @@
+"""What fits: inside in truth, nothing much larger, and by how much and where what does not."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+from deltaviz.mechanism.margin import MarginKind
+from deltaviz.robots import Robot, load_robot
+from deltaviz.robots.workspace import Belt, Cuboid, Cylinder, Limit, Workspace
+from tests.robots.workspace import oracle
+
+ARMS = Limit.REACH | Limit.JOINTS | Limit.BALL_JOINTS
+
+
+@pytest.fixture(scope="module")
+def space(stm32: Robot) -> Workspace:
+    return stm32.workspace(ARMS)
+
+
+def skin_of_cylinder(shape: Cylinder, count: int = 200_000, seed: int = 1) -> np.ndarray:
+    """Points on its side and its ends."""
+    random = np.random.default_rng(seed)
+    angle = random.uniform(0, 2 * math.pi, count)
+    radius = shape.diameter / 2 * np.ones(count)
+    z = shape.floor + shape.height * random.uniform(0, 1, count)
+    ends = count // 2
+    radius[:ends] *= np.sqrt(random.uniform(0, 1, ends))
+    z[:ends] = shape.floor + shape.height * (np.arange(ends) % 2)
+    x, y = shape.centre
+    return np.stack((x + radius * np.cos(angle), y + radius * np.sin(angle), z), axis=-1)
+
+
+def skin_of_box(shape: Cuboid, count: int = 200_000, seed: int = 1) -> np.ndarray:
+    random = np.random.default_rng(seed)
+    sides = np.array((*shape.size, shape.height))
+    middle = np.array((*shape.centre, shape.floor + shape.height / 2))
+    points = random.uniform(-0.5, 0.5, (count, len(sides)))
+    face = np.arange(count) % len(sides)
+    points[np.arange(count), face] = np.sign(random.uniform(-1, 1, count)) / 2
+    corners = np.array(list(itertools.product((-0.5, 0.5), repeat=len(sides))))
+    return middle + sides * np.concatenate((corners, points))
+
+
+def some_outside(robot: Robot, points: np.ndarray) -> bool:
+    return not oracle.reached(robot, points).all()
+
+
+def test_the_largest_cylinder_is_inside_and_no_larger_one_is(
+    stm32: Robot, space: Workspace
+) -> None:
+    found = space.largest_cylinder()
+    assert found is not None
+    shape = found.shape
+    assert isinstance(shape, Cylinder)
+    assert oracle.reached(stm32, skin_of_cylinder(shape)).all()
+    assert found.most < 1.03 * shape.volume
+    # Of many others of a little more than the proved bound, each sticks out.
+    for height in np.linspace(0.3, 2.5, 45) * shape.height:
+        diameter = math.sqrt(1.005 * found.most * 4 / math.pi / height)
+        for floor in np.linspace(-460, -200, 53):
+            other = Cylinder(diameter, height, floor)
+            assert some_outside(stm32, skin_of_cylinder(other, 1500, seed=2))
+
+
+@pytest.mark.parametrize("height", [20.0, 150.0])
+def test_the_widest_cylinder_of_a_height(stm32: Robot, space: Workspace, height: float) -> None:
+    found = space.largest_cylinder(height=height)
+    assert found is not None
+    shape = found.shape
+    assert isinstance(shape, Cylinder)
+    assert shape.height == pytest.approx(height)
+    assert oracle.reached(stm32, skin_of_cylinder(shape)).all()
+    assert shape.diameter <= found.most < shape.diameter + 3
+    for floor in np.linspace(-460, -200, 521):
+        assert some_outside(
+            stm32, skin_of_cylinder(Cylinder(found.most + 0.5, height, floor), 3000)
+        )
+
+
+def test_a_cylinder_that_stands_on_a_floor(stm32: Robot, space: Workspace) -> None:
+    found = space.largest_cylinder(height=60.0, floor=-380.0)
+    assert found is not None
+    shape = found.shape
+    assert isinstance(shape, Cylinder)
+    assert (shape.floor, shape.height) == (-380.0, 60.0)
+    assert oracle.reached(stm32, skin_of_cylinder(shape)).all()
+    assert some_outside(stm32, skin_of_cylinder(Cylinder(shape.diameter + 1, 60.0, -380.0)))
+
+
+def test_free_of_the_axis_it_is_no_smaller(uneven: Robot) -> None:
+    workspace = uneven.workspace(ARMS)
+    central = workspace.largest_cylinder(height=100.0)
+    free = workspace.largest_cylinder(height=100.0, centre=None)
+    assert central is not None
+    assert free is not None
+    assert isinstance(central.shape, Cylinder)
+    assert isinstance(free.shape, Cylinder)
+    assert free.shape.diameter > central.shape.diameter
+    assert free.shape.centre != (0.0, 0.0)
+    assert free.most < 1.1 * free.shape.diameter
+    assert oracle.reached(uneven, skin_of_cylinder(free.shape)).all()
+
+
+@pytest.mark.parametrize("aspect", [1.0, 279.4 / 215.9])
+def test_the_largest_box(stm32: Robot, space: Workspace, aspect: float) -> None:
+    found = space.largest_box(height=80.0, aspect=aspect, centre=(0.0, 0.0))
+    assert found is not None
+    shape = found.shape
+    assert isinstance(shape, Cuboid)
+    assert shape.size[1] == pytest.approx(aspect * shape.size[0])
+    assert oracle.reached(stm32, skin_of_box(shape)).all()
+    wider = found.most + 0.5
+    for floor in np.linspace(-460, -200, 261):
+        other = Cuboid((wider, aspect * wider), 80.0, floor, (0.0, 0.0))
+        assert some_outside(stm32, skin_of_box(other, 3000))
+
+
+def test_the_largest_rectangle_in_a_plane() -> None:
+    robot = load_robot("fivebar")
+    found = robot.workspace(ARMS).largest_box(centre=(0.0,))
+    assert found is not None
+    assert isinstance(found.shape, Cuboid)
+    assert len(found.shape.size) == 1
+    assert oracle.reached(robot, skin_of_box(found.shape)).all()
+    assert found.most < 1.03 * found.shape.volume
+    with pytest.raises(ValueError, match="no cylinders"):
+        robot.workspace().largest_cylinder()
+
+
+def test_nothing_fits_where_nothing_is_reached(space: Workspace) -> None:
+    assert space.largest_cylinder(height=30.0, floor=100.0) is None
+    assert space.largest_cylinder(height=700.0) is None
+    assert space.largest_box(height=30.0, centre=(400.0, 0.0)) is None
+
+
+def test_how_much_a_shape_may_grow(stm32: Robot, space: Workspace) -> None:
+    shape = Cylinder(200.0, 60.0, -350.0)
+    found = space.fit(shape)
+    assert found.fits
+    assert found.clearance > 10
+    grown = Cylinder(200 + 2 * (by := found.clearance - found.uncertain), 60 + 2 * by, -350 - by)
+    assert oracle.reached(stm32, skin_of_cylinder(grown)).all()
+    by = found.clearance + 0.5
+    assert some_outside(
+        stm32, skin_of_cylinder(Cylinder(200 + 2 * by, 60 + 2 * by, -350 - by), 400_000)
+    )
+    assert found.unreached == 0
+
+
+def test_how_much_a_shape_must_shrink_and_where(stm32: Robot, space: Workspace) -> None:
+    shape = Cylinder(420.0, 120.0, -380.0)
+    found = space.fit(shape)
+    assert not found.fits
+    assert found.clearance < -5
+    by = found.clearance - found.uncertain
+    shrunk = Cylinder(420 + 2 * by, 120 + 2 * by, -380 - by)
+    assert oracle.reached(stm32, skin_of_cylinder(shrunk)).all()
+    assert found.where is not None
+    assert shape.depth(found.where[None])[0] == pytest.approx(-found.clearance, abs=0.01)
+    assert not oracle.reached(stm32, found.where[None])[0]
+    assert found.limit is not None
+    assert found.limit.kind is MarginKind.JOINT_MAX
+    random = np.random.default_rng(8).uniform((-210, -210, -380), (210, 210, -260), (400_000, 3))
+    random = random[np.hypot(random[:, 0], random[:, 1]) <= 210]
+    assert found.unreached == pytest.approx(1 - oracle.reached(stm32, random).mean(), abs=0.003)
+
+
+def test_a_box_that_is_wholly_out_of_reach(space: Workspace) -> None:
+    found = space.fit(Cuboid((100.0, 100.0), 50.0, 200.0, (0.0, 0.0)))
+    assert not found.fits
+    assert found.unreached == 1.0
+    assert found.clearance == pytest.approx(-25, abs=0.3)
+
+
+def served(robot: Robot, belt: Belt) -> tuple[float, float] | None:
+    """The longest run of places over all of the belt's width and height, tried every half mm."""
+    x = np.arange(-400, 400, 0.5)
+    side = np.linspace(-belt.width / 2, belt.width / 2, 61) + belt.offset
+    z = np.linspace(belt.floor, belt.floor + belt.height, 5)
+    grid = np.stack(np.meshgrid(x, side, z, indexing="ij"), axis=-1)
+    if belt.axis == 1:
+        grid = grid[..., [1, 0, 2]]
+    free = oracle.reached(robot, grid.reshape(-1, 3)).reshape(len(x), -1).all(axis=1)
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], free, [0]))))
+    runs = [(float(x[a]), float(x[b - 1])) for a, b in edges.reshape(-1, 2)]
+    return max(runs, key=lambda run: run[1] - run[0], default=None)
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+@pytest.mark.parametrize(("width", "offset"), [(200.0, 0.0), (120.0, 60.0)])
+def test_the_stretch_of_a_belt(
+    stm32: Robot, space: Workspace, axis: int, width: float, offset: float
+) -> None:
+    belt = Belt(width, 40.0, -340.0, axis=axis, offset=offset)
+    found, expected = space.serve(belt), served(stm32, belt)
+    assert expected is not None
+    assert found.fits
+    assert (found.start, found.end) == pytest.approx(expected, abs=1.0)
+    assert not space.serve(Belt(width, 40.0, -340.0, axis, offset, stretch=500.0)).fits
+
+
+def test_a_belt_that_is_too_wide(stm32: Robot, space: Workspace) -> None:
+    belt = Belt(800.0, 40.0, -340.0)
+    found = space.serve(belt)
+    assert not found.fits
+    assert (found.length, found.start) == (0.0, None)
+    assert served(stm32, Belt(found.widest - 0.5, 40.0, -340.0)) is not None
+    assert served(stm32, Belt(found.widest + 1.0, 40.0, -340.0)) is None
