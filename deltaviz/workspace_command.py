@@ -78,16 +78,11 @@ def run(robot: Robot, options: argparse.Namespace) -> int:
             print(json.dumps({"robot": robot.name, "empty": True, "reason": workspace.reason}))
         print(f"deltaviz: the workspace is empty. {workspace.reason}", file=sys.stderr)
         return FAILED
-    from deltaviz.robots.workspace.report import report
-
-    found = report(workspace, floor=options.at, anywhere=options.anywhere, payload=options.payload)
     answers = _answers(workspace, options)
-    if options.json:
-        _print_json(found, answers)
+    if answers:
+        _print_answers(workspace, answers, as_json=options.json)
     else:
-        _print_report(found)
-        for answer in answers:
-            print(answer.text)
+        _print_found(workspace, options)
     written = _write(workspace, options)
     return OK if written and all(answer.fits for answer in answers) else FAILED
 
@@ -235,10 +230,27 @@ def _too_wide(workspace: Workspace, belt: Belt, widest: float) -> str:
     return f"{text}\n  At most {widest:.1f} mm are: it is {belt.width - widest:.1f} mm too wide."
 
 
-def _print_json(found: Report, answers: list[_Answer]) -> None:
-    from deltaviz.robots.workspace.report import as_json
+def _print_answers(workspace: Workspace, answers: list[_Answer], *, as_json: bool) -> None:
+    """Questions are answered alone: the rest takes longer."""
+    from deltaviz.robots.workspace.report import limit_names
 
-    print(json.dumps(as_json(found) | {a.key: a.data for a in answers}, allow_nan=False))
+    if as_json:
+        head = {"robot": workspace.robot.name, "limits": limit_names(workspace.limits)}
+        data = head | {"empty": False} | {answer.key: answer.data for answer in answers}
+        print(json.dumps(data, allow_nan=False))
+        return
+    for answer in answers:
+        print(answer.text)
+
+
+def _print_found(workspace: Workspace, options: argparse.Namespace) -> None:
+    from deltaviz.robots.workspace.report import as_json, report
+
+    found = report(workspace, floor=options.at, anywhere=options.anywhere, payload=options.payload)
+    if options.json:
+        print(json.dumps(as_json(found), allow_nan=False))
+    else:
+        _print_report(found)
 
 
 def _print_report(found: Report) -> None:

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 QUALITY_POINTS = 20_000
+COUNTED = 40  # cells along the longest side, by which its size is guessed
 HEIGHTS = 12
 
 
@@ -174,11 +175,14 @@ class Workspace:
         return quality(self.robot, self.inside() if points is None else points)
 
     def inside(self, count: int = QUALITY_POINTS) -> Array:
-        """About `count` grid points of the workspace, (n, d)."""
-        share = abs(self.volume) / count
-        field = self.field(share ** (1 / self.margins.dimensions))
-        grid = field.grid
-        return grid.low + grid.cell * np.argwhere(field.value >= 0)
+        """About `count` grid points of the workspace, (n, d). Raises Empty."""
+        dimensions = self.margins.dimensions
+        coarse = self.field(float(self.box.size.max()) / COUNTED)
+        size = (coarse.value >= 0).sum() * coarse.grid.cell**dimensions
+        if not size:
+            raise Empty(self.reason)
+        field = self.field(float(size / count) ** (1 / dimensions))
+        return field.grid.low + field.grid.cell * np.argwhere(field.value >= 0)
 
     def plot(self, path: str | None = None, *, colour: str | None = None) -> Figure:
         """The boundary in space and along the axes, or sections coloured by a measure of
