@@ -46,7 +46,7 @@ def plot(workspace: Workspace, path: str | None = None, *, colour: str | None = 
             _view(workspace, figure.add_subplot(2, 2, place), view, colour)
     figure.suptitle(_title(workspace, colour))
     if path is not None:
-        figure.savefig(path, dpi=130)
+        figure.savefig(path, dpi=110, bbox_inches="tight")
     return figure
 
 

@@ -64,7 +64,7 @@ def test_each_vertex_is_on_the_wall_that_it_names(stm32: Robot, stm32_boundary: 
 def distances(boundary: Boundary, points: np.ndarray) -> np.ndarray:
     """From points to the nearest faces of a mesh."""
     corners = boundary.vertices[boundary.faces]
-    _, near = KDTree(corners.mean(axis=1)).query(points, k=60)
+    near = np.asarray(KDTree(corners.mean(axis=1)).query(points, k=60)[-1])
     repeated = np.repeat(points, near.shape[1], axis=0)
     closest = trimesh.triangles.closest_point(corners[near.ravel()], repeated)
     return np.linalg.norm(closest - repeated, axis=-1).reshape(near.shape).min(axis=1)
