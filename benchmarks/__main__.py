@@ -20,6 +20,7 @@ BENCHMARKS = {
         "Inverse and forward for a million poses, against scalar C",
         ["kinematics", "--rounds", "3"],
     ),
+    "workspace": ("The workspace: field, boundary, what fits", ["workspace"]),
     "follower": ("One tick of the follower", ["follower", "--ticks", "200"]),
     "loop": ("The control loop, alone and on busy cores", ["loop", "--seconds", "5"]),
     "watched_loop": ("The control loop while browsers watch", ["watched_loop", "--seconds", "5"]),
