@@ -143,7 +143,11 @@ def _proved(
         shrunk = _shrunk(sketch, max(0.0, deep.bound), wanted, deep.point)
         if best is None or shrunk.worth(stem, wanted) > best.worth(stem, wanted):
             best = shrunk
-        if deep.point is None or deep.bound <= tolerance:
+        if deep.point is None:
+            break
+        if spare and 2 * deep.bound > spare:
+            spare = 2.2 * deep.bound  # the search gave up early: leave it room at the ends
+        elif deep.value <= tolerance:  # more rays would find no more
             break
         place = deep.point[[stem.axis]]
         aside = stem.distance(deep.point[list(stem.across)] - centre)

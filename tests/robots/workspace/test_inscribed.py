@@ -210,3 +210,14 @@ def test_a_belt_that_is_too_wide(stm32: Robot, space: Workspace) -> None:
     assert (found.length, found.start) == (0.0, None)
     assert served(stm32, Belt(found.widest - 0.5, 40.0, -340.0)) is not None
     assert served(stm32, Belt(found.widest + 1.0, 40.0, -340.0)) is None
+
+
+def test_a_flat_cylinder_between_parts_that_nearly_touch() -> None:
+    """Where the proof is coarsest: a metre wide, ended by a rod beside its own upper arm."""
+    robot = load_robot("zheng2023")
+    workspace = robot.workspace()
+    found = workspace.largest_cylinder(height=100.0)
+    assert found is not None
+    assert isinstance(found.shape, Cylinder)
+    assert (workspace.margins.least(skin_of_cylinder(found.shape)) >= 0).all()
+    assert found.most < found.shape.diameter + 3
