@@ -6,11 +6,11 @@ at most half of 2^-10 microsteps off, the tenth and the millionth alike.
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Sequence
 
 from deltaviz.link.messages import Arm, CartesianSegment, Segment, Telemetry
-from deltaviz.link.rules import since, since16
+from deltaviz.link.rules import since
+from deltaviz.link.unseen import Unseen
 from deltaviz.motion.knot import CartesianKnot, Knot
 
 POSITION_UNIT = 1024  # per microstep
@@ -38,7 +38,7 @@ class Flight:
         self._index = 0
         self._t_end = telemetry.now
         self._resting = True
-        self._unseen: deque[tuple[int, int]] = deque()  # index, duration of what has no receipt
+        self.unseen = Unseen(tick_hz=tick_hz)
 
     @property
     def resting(self) -> bool:
@@ -62,7 +62,7 @@ class Flight:
             segment = Segment(*when, *self._joints(knot))
         else:
             segment = CartesianSegment(*when, *_tip(knot))
-        self._unseen.append((segment.index, duration))
+        self.unseen.add(segment, telemetry)
         self._index = (self._index + 1) & 0xFFFF
         self._t_end = segment.t_end
         self._resting = not any(segment.v)
@@ -78,31 +78,28 @@ class Flight:
 
     def acknowledge(self, telemetry: Telemetry) -> None:
         """Forget what `telemetry` says has been taken into the queue."""
-        if not self._is_armed(telemetry):
-            return
-        # "None taken yet" is 65535, one before the first index: it acknowledges nothing here.
-        while self._unseen and since16(telemetry.last_index, self._unseen[0][0]) >= 0:
-            self._unseen.popleft()
+        if self._is_armed(telemetry):
+            self.unseen.acknowledge(telemetry)
 
     def ahead(self, telemetry: Telemetry, *, elapsed: float) -> float:
         """Seconds of motion that the board still has, `elapsed` s after `telemetry` came."""
         queued = since(telemetry.t_queue_end, telemetry.now) if self._is_armed(telemetry) else 0
-        ticks = max(0, queued) + sum(duration for _, duration in self._unseen)
+        ticks = max(0, queued) + self.unseen.ticks
         return max(0.0, ticks / self._tick_hz - elapsed)
 
     @property
     def unacknowledged(self) -> float:
         """Seconds of motion that were sent and of which no telemetry has told."""
-        return sum(duration for _, duration in self._unseen) / self._tick_hz
+        return self.unseen.ticks / self._tick_hz
 
     def free(self, telemetry: Telemetry) -> int:
         """Places in the board's queue that nothing sent will take."""
-        return telemetry.free - len(self._unseen)
+        return telemetry.free - len(self.unseen)
 
     def all_taken(self, telemetry: Telemetry) -> bool:
         """Whether the board has all that was sent, and has run it."""
-        if self._unseen or not self._is_armed(telemetry):
-            return not self._unseen and self._index == 0
+        if self.unseen or not self._is_armed(telemetry):
+            return not self.unseen and self._index == 0
         return since(telemetry.t_queue_end, telemetry.now) <= 0
 
     def _is_armed(self, telemetry: Telemetry) -> bool:

@@ -29,6 +29,9 @@ from deltaviz.link.timing import (
 from deltaviz.link.under_way import UnderWay
 from deltaviz.motion.knot import CartesianKnot, Knot
 
+# Refusals of a segment after which all is as before: it was early, late or there already.
+PASSED_OVER = frozenset({m.Refusal.STATE, m.Refusal.EPOCH, m.Refusal.INDEX, m.Refusal.QUEUE_FULL})
+
 
 class Session:
     """One conversation with one board.
@@ -104,6 +107,17 @@ class Session:
     def stopped(self) -> m.Stopped | None:
         """The newest one of this motion."""
         return self._under_way.stopped
+
+    @property
+    def never_began(self) -> bool:
+        """A motion was lost on its way to the board, for so long that it must not begin."""
+        flight, telemetry = self.flight, self.telemetry
+        return flight is not None and telemetry is not None and flight.unseen.too_late(telemetry)
+
+    @property
+    def lossy(self) -> bool:
+        """Whether much of this motion, or of the last one when it ended, was lost on its way."""
+        return self._under_way.lossy
 
     @property
     def underruns(self) -> int:
@@ -231,6 +245,8 @@ class Session:
             self._out.append(m.Hello(m.PROTOCOL_VERSION))
             self._hello_next = now + HELLO_REPEAT
         self._out += self._under_way.due(now)
+        if self.flight is not None and self.telemetry is not None:
+            self._out += self.flight.unseen.repeats(self.telemetry)
         self._listen(now)
 
     def _listen(self, now: float) -> None:
@@ -320,6 +336,9 @@ class Session:
         self._answered(refused.command)
         if refused.command == "configure":
             self._configuration_refused(refused)
+        elif refused.of_segment and refused.reason in PASSED_OVER:
+            if self.flight is not None:
+                self.flight.unseen.passed_over(refused.index)
         elif not refused.of_segment or self.flight is not None:
             self.refused = refused
             self._under_way.was_refused(refused.command)

@@ -19,6 +19,10 @@ SILENT_AFTER: Final = 1.0
 STALE: Final = LEASE_MS / 1000  # telemetry older than this can begin and continue no motion
 STOP_REPEAT: Final = 0.010
 KEEP_PERIOD: Final = 0.025  # well within the board's lease
+SEGMENT_REPEAT: Final = 0.025  # board time: a round trip, and a link's hiccup
+GAP_REPEAT: Final = 0.008  # board time: the board has said so, but may not have met the repetition
+NOT_BEGUN: Final = 0.1  # board time: well before the board would think it too late to begin
+LOSSY_FOR: Final = 0.2  # board time: more than the longest horizon
 NEVER_ARMED: Final = 0.1  # board time after a stop: an Arm before it has come by then or was lost
 
 
@@ -39,6 +43,12 @@ TIMEOUTS: Final = (
     Timeout(STALE, "the last telemetry", "no motion is begun, and none continued until the next"),
     Timeout(STOP_REPEAT, "Stop or EStop, while it is not answered", "it is sent again"),
     Timeout(KEEP_PERIOD, "the last Keep or Segment, while the robot moves", "Keep is sent"),
+    Timeout(SEGMENT_REPEAT, "a segment, by the board's clock, that no telemetry says was taken",
+            "it and all after it are sent again"),
+    Timeout(GAP_REPEAT, "the same, when the board has refused a later one (INDEX)",
+            "it and all after it are sent again"),
+    Timeout(NOT_BEGUN, "the first segment from rest, by the board's clock, if it is not taken",
+            "Stop is sent: it is too late to begin"),
     Timeout(NEVER_ARMED, "a Stop, by the board's clock",
             "an answer that names the epoch before counts, too: the Arm never came"),
 )  # fmt: skip

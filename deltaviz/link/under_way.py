@@ -22,6 +22,7 @@ class UnderWay:
         self.flight: Flight | None = None
         self.stopped: m.Stopped | None = None  # the newest
         self.underruns = 0
+        self.lossy = False  # much of the newest motion had to be sent again, when it was last known
         self._underrun_epoch: int | None = None
         self._repeat_at = float("inf")
         self._stopping_epoch: int | None = None
@@ -33,6 +34,7 @@ class UnderWay:
     def begin(self, flight: Flight) -> None:
         self._ask(Turn.BEGIN)
         self.flight = flight
+        self.lossy = False
         self.stopped = None
 
     def home(self) -> None:
@@ -69,6 +71,7 @@ class UnderWay:
     def reported(self, telemetry: m.Telemetry, *, tick_hz: int) -> None:
         if self.flight is not None:
             self.flight.acknowledge(telemetry)
+            self.lossy = self.flight.unseen.lossy(telemetry)
         if self.state is Motion.STOPPING and self._was_never_armed(telemetry, tick_hz):
             self._stopping_epoch = None
         if telemetry.state is m.BoardState.ESTOP:

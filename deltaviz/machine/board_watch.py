@@ -23,6 +23,10 @@ def reported(session: Session) -> Event | None:
             return Event.BRAKES
         case BoardState.HOMING:
             return None if session.homing else Event.BRAKES
+        case BoardState.HALTED if session.flight is not None and (
+            telemetry.epoch == session.flight.epoch
+        ):
+            return Event.BRAKES  # it has, and what it said of it was lost
         case BoardState.HALTED | BoardState.ARMED:
             if session.moving or session.homing:
                 return None

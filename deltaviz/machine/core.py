@@ -202,6 +202,8 @@ class Core:
             return
         if session.refused is not None:
             self._board_refused(session, now)
+        if session.never_began:
+            self.stop(sentences.NEVER_BEGAN, now)
         if session.ready:
             self._meet(session)
         if session.ready and session.settled:
@@ -239,7 +241,8 @@ class Core:
         elif self.mode is Mode.STOPPING:
             if not session.stopping:
                 if self._stop_reason is None and session.stopped is not None:
-                    self._stop_reason = sentences.STOPPED_BY.get(session.stopped.cause)
+                    cause = session.stopped.cause
+                    self._stop_reason = sentences.stopped_by(cause, lossy=session.lossy)
                 self._enter(event)
         elif self.mode not in MOVING or self.mode is Mode.HOMING:
             if session.flight is None:
@@ -249,7 +252,8 @@ class Core:
     def _board_braked(self, session: Session, now: float) -> None:
         """The board stopped by itself: make sure of it, and find out why when it rests."""
         if session.stopped is not None:
-            self._stop_reason = sentences.STOPPED_BY.get(session.stopped.cause)
+            cause = session.stopped.cause
+            self._stop_reason = sentences.stopped_by(cause, lossy=session.lossy)
         self._drop_motion(now)
         session.stop(now)
         self._enter(Event.BRAKES)

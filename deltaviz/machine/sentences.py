@@ -29,6 +29,12 @@ STOPPED_BY: Final[Mapping[StopCause, str]] = {
     StopCause.BOOT: "The board restarted.",
 }
 
+LOST_ON_THE_WAY = (
+    "The connection lost or delayed too much: the board ran out of motion and braked. "
+    "Check its cable."
+)
+NEVER_BEGAN = "The motion did not reach the board, so it was given up. Check its cable."
+
 FAULT: Final[Mapping[Fault, str]] = {
     Fault.LIMIT_SWITCH: "An arm reached its end switch. Move it away by hand, then reset and home.",
     Fault.HOMING_NO_SWITCH: (
@@ -65,6 +71,13 @@ REFUSED_BECAUSE: Final[Mapping[Refusal, str]] = {
     Refusal.INPUT: "the hardware emergency stop is still pressed",
     Refusal.KIND: "it mixes straight and joint motion where the robot does not rest",
 }
+
+
+def stopped_by(cause: StopCause, *, lossy: bool) -> str | None:
+    """What made the board stop; None: it was asked to. `lossy`: much was lost on its way."""
+    if cause is StopCause.UNDERRUN and lossy:
+        return LOST_ON_THE_WAY
+    return STOPPED_BY.get(cause)
 
 
 def board_refused(refused: Refused) -> str:

@@ -330,6 +330,26 @@ def test_a_segment_that_the_board_refuses_stops_with_its_words(bench: Any) -> No
     bench.check_limits()
 
 
+def test_a_board_that_halted_and_was_not_heard_saying_so(bench: Any, monkeypatch: Any) -> None:
+    """What is heard of the whole brake is that the board is halted, and not by whom."""
+    jogging(bench)
+    take, said = bench.board.take, []
+
+    def lost() -> list[m.BoardMessage]:
+        said.extend(take())
+        return []
+
+    with monkeypatch.context() as patch:
+        patch.setattr(bench.board, "take", lost)
+        bench.board.receive(m.Stop())
+        bench.run(0.002)
+        bench.run_until(lambda: not bench.board.moving)
+    bench.run(0.05)
+    assert any(isinstance(x, m.Stopped) for x in said)
+    assert bench.mode is Mode.IDLE
+    assert_stays(bench)
+
+
 def test_homing_waits_for_the_answer_to_a_stop(bench: Any, monkeypatch: Any) -> None:
     """Its answers are lost, while the board was enabled: the stop is still repeated."""
     bench.do(i.Disable(ME))
