@@ -247,6 +247,8 @@ class Core:
         elif self.mode not in MOVING or self.mode is Mode.HOMING:
             if session.flight is None:
                 self._drive = None
+            if self.mode is Mode.HOMING and session.stopped is not None:
+                self._stop_reason = sentences.stopped_by(session.stopped.cause, lossy=False)
             self._enter(event)
 
     def _board_braked(self, session: Session, now: float) -> None:

@@ -19,6 +19,7 @@ NEXT_STEP: Final[Mapping[Mode, str]] = {
 }
 
 STOPPED_BY: Final[Mapping[StopCause, str]] = {
+    StopCause.HOST_STOP: "The board was told to stop, and not from here.",
     StopCause.UNDERRUN: "The computer was too slow: the board ran out of motion and braked.",
     StopCause.LEASE: "The board did not hear from the computer for 150 ms and braked.",
     StopCause.BAD_SEGMENT: "The board refused a motion and braked.",
