@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from deltaviz.link.messages import Arm, CartesianSegment, Segment, Telemetry
+from deltaviz.link.messages import Arm, BoardState, CartesianSegment, Segment, Telemetry
 from deltaviz.link.rules import since
 from deltaviz.link.unseen import Unseen
 from deltaviz.motion.knot import CartesianKnot, Knot
@@ -80,6 +80,11 @@ class Flight:
         """Forget what `telemetry` says has been taken into the queue."""
         if self._is_armed(telemetry):
             self.unseen.acknowledge(telemetry)
+
+    def never_began(self, telemetry: Telemetry) -> bool:
+        """What was sent has been under way for so long that it must not begin any more."""
+        ended = self._is_armed(telemetry) and telemetry.state is not BoardState.ARMED
+        return not ended and self.unseen.too_late(telemetry)
 
     def ahead(self, telemetry: Telemetry, *, elapsed: float) -> float:
         """Seconds of motion that the board still has, `elapsed` s after `telemetry` came."""

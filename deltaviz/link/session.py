@@ -112,7 +112,7 @@ class Session:
     def never_began(self) -> bool:
         """A motion was lost on its way to the board, for so long that it must not begin."""
         flight, telemetry = self.flight, self.telemetry
-        return flight is not None and telemetry is not None and flight.unseen.too_late(telemetry)
+        return flight is not None and telemetry is not None and flight.never_began(telemetry)
 
     @property
     def lossy(self) -> bool:

@@ -33,6 +33,7 @@ def wire_gone_for_a_moment(bench: WireBench, _random: Random) -> None:
     bench.cut = True
     go_on(bench, 0.1)
     bench.cut = False
+    go_on(bench, 0.1)
 
 
 def wire_gone(bench: WireBench, _random: Random) -> None:
@@ -90,6 +91,7 @@ def flooded_host(bench: WireBench, random: Random) -> None:
         bench.flood_host(b"".join(random.choices(told, k=4)))
 
     go_on(bench, FLOODED, each=flood)
+    go_on(bench, 0.1)  # until it has heard its board again
 
 
 BREAKS: dict[str, Break] = {

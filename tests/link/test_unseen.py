@@ -39,8 +39,8 @@ class Host:
 def at(seconds: float, *, taken: int = 0xFFFF, **changes: object) -> m.Telemetry:
     """`seconds` after the segments were sent."""
     now = 1000 + ticks(seconds)
-    told = telemetry(state=m.BoardState.ARMED, epoch=EPOCH, now=now, last_index=taken)
-    return replace(told, t_queue_end=now, **changes)
+    told = telemetry(epoch=EPOCH, now=now, last_index=taken, t_queue_end=now)
+    return replace(told, **{"state": m.BoardState.ARMED, **changes})
 
 
 def refused(index: int, reason: m.Refusal = m.Refusal.INDEX) -> m.Refused:
@@ -105,6 +105,12 @@ def test_a_motion_that_did_not_get_there_is_too_late() -> None:
 def test_one_that_moves_has_begun() -> None:
     host = Host(2)
     host.hears(at(NOT_BEGUN, taken=0, flags=HOMED | m.TelemetryFlags.MOVING))
+    assert not host.session.never_began
+
+
+def test_one_that_the_board_has_ended_has_begun() -> None:
+    host = Host(2)
+    host.hears(at(NOT_BEGUN, taken=0, state=m.BoardState.HALTED))
     assert not host.session.never_began
 
 
