@@ -31,6 +31,7 @@ from deltaviz.link.messages import (
 from deltaviz.link.rules import since
 from deltaviz.link.session import Session
 from deltaviz.link.socket_stream import SocketStream
+from deltaviz.link.tap import Tap, untapped
 from deltaviz.link.wire.channel import Channel
 from deltaviz.motion.knot import Knot
 from deltaviz.robots import Robot
@@ -48,7 +49,7 @@ GRANT = 5  # ms of the board's time, each turn
 class EmulatedBoard:
     """Switched on, with its arms hanging somewhere; `connect` begins a session."""
 
-    def __init__(self, robot: Robot, *, image: Path | None = None) -> None:
+    def __init__(self, robot: Robot, *, image: Path | None = None, tap: Tap = untapped) -> None:
         self.robot = robot
         self.configure = configure_from(robot)
         self.arms = arms_of(self.configure)
@@ -65,7 +66,7 @@ class EmulatedBoard:
             )
         self._trace.started()
         self.bench = self._emulator.bench
-        self._channel = Channel(SocketStream(link))
+        self._channel = Channel(tap(SocketStream(link)))
         self._met: float | None = None  # when, by ours, the board's time began
         self._link = link
         self.sent: list[HostMessage] = []

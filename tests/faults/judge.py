@@ -23,8 +23,12 @@ Floats = NDArray[np.float64]
 MS = 200  # ticks
 SAME = 5e-4  # microsteps: two ways of computing a path's position
 BRAKED = 5e-3  # the same of a brake, whose velocity is a whole number of 2^-16 microsteps/ms
+COUNTED = (
+    0.8  # the same of both by whole microsteps: half of one, and a tick or two of a step's way
+)
 STILL = 0.02  # microsteps, within which a path ends as a brake would
 UNSURE = 12  # samples by which a slow path and its brake may look the same
+UNSURE_COUNTED = 80  # the same, by whole microsteps
 RATE_SLACK = 0.003  # of velocity and acceleration: the board's own slack, and rounding
 PLACE = 0.1  # mm, which the board allows itself
 LATEST = 150 * MS  # ticks by which a motion may begin late
@@ -59,7 +63,15 @@ _RATES = ("joint velocity", "joint acceleration")
 
 
 class Judge:
-    def __init__(self, preset: str = "stm32") -> None:
+    """With `counted` the positions are steps, of which a fit has to tell speeds and accelerations:
+    they are not judged here.
+    """
+
+    def __init__(self, preset: str = "stm32", *, counted: bool = False) -> None:
+        self.counted = counted
+        self.same = COUNTED if counted else SAME
+        self.braked = COUNTED if counted else BRAKED
+        self.unsure = UNSURE_COUNTED if counted else UNSURE
         self._robot = judged(preset)
         drive = self._robot.file["drive"]
         turns = drive["gear"][0] / drive["gear"][1]
@@ -111,6 +123,8 @@ class Judge:
         # Opening an epoch forgets fractions of a microstep, without a step.
         even = same & np.array([a.epoch == b.epoch for a, b in pairwise(samples)], bool)
         even &= ~_rounded(positions)
+        if self.counted:
+            return same
         fast = np.abs(rate[even]) / self._velocity
         hard = np.abs(turn[even[:-1] & even[1:]]) / self._acceleration
         verdict.peak("joint velocity", float(fast.max(initial=0.0)))
@@ -160,6 +174,8 @@ class _Following:
         at = 0  # the first sample that is not explained yet
         origin = np.array(arm.counts, np.float64)
         for motion in self._motions():
+            if _stands(motion, origin):
+                continue
             at = self._rests(at)
             if at == len(self._ticks):
                 return
@@ -204,7 +220,7 @@ class _Following:
             verdict.wrong.append(f"epoch {self._epoch}: a motion began {late / MS:.0f} ms late")
         path = _Path(motion, origin, since=self._ticks[at], late=late)
         ticks, positions = self._ticks[at:], self._positions[at:]
-        off = np.abs(path.positions(ticks) - positions).max(axis=1) > SAME
+        off = np.abs(path.positions(ticks) - positions).max(axis=1) > self._judge.same
         off |= ticks > path.end
         left = int(np.argmax(off)) if off.any() else len(off)
         braked = left < len(off) and not (ticks[left] > path.end and path.rests)
@@ -243,16 +259,22 @@ class _Following:
         first one after it. It begins at the end of a sample, or at a knot.
         """
         best = left, left
-        for first in range(left, max(left - UNSURE, -1), -1):
+        for first in range(left, max(left - self._judge.unsure, -1), -1):
             start = ticks[first] - MS
             for begun in (start, *path.knots_in(start, ticks[first])):
                 p, v = path.position(begun), path.velocity(begun)
                 wanted = self._judge.brake(p, v, ticks[first:] - begun)
-                off = np.abs(wanted - positions[first:]).max(axis=1) > BRAKED
+                off = np.abs(wanted - positions[first:]).max(axis=1) > self._judge.braked
                 end = first + (int(np.argmax(off)) if off.any() else len(off))
                 if end > left and end >= best[1]:
                     best = first, end
         return best
+
+
+def _stands(motion: list[Segment], origin: Floats) -> bool:
+    """Its knots are where it begins, but for rounding."""
+    away = max(float(np.abs(np.array(s.p) / 1024 - origin).max()) for s in motion)
+    return away <= 1 / 1024 and not any(any(s.v) for s in motion)
 
 
 class _Path:
