@@ -34,7 +34,10 @@ LOST_ON_THE_WAY = (
     "The connection lost or delayed too much: the board ran out of motion and braked. "
     "Check its cable."
 )
-NEVER_BEGAN = "The motion did not reach the board, so it was given up. Check its cable."
+NEVER_BEGAN = (
+    "The motion did not reach the board, so it was given up. Check its cable; if it happens again, "
+    "connect anew."
+)
 
 FAULT: Final[Mapping[Fault, str]] = {
     Fault.LIMIT_SWITCH: "An arm reached its end switch. Move it away by hand, then reset and home.",

@@ -52,9 +52,16 @@ class Executed:
         ):
             self.seen = message.seen
         if isinstance(message, Arm):
-            assert self.arms.setdefault(message.epoch, message) == message, "one epoch, armed twice"
+            self._arm(message)
         if isinstance(message, Segment):
             self._segment(message)
+
+    def _arm(self, message: Arm) -> None:
+        """An epoch that the board never took may be named again, by a new session."""
+        if self.arms.get(message.epoch, message) != message:
+            assert self.epoch != message.epoch, "one epoch, armed twice"
+            self.segments = {k: s for k, s in self.segments.items() if k[0] != message.epoch}
+        self.arms[message.epoch] = message
 
     def _segment(self, message: Segment) -> None:
         first = self.segments.setdefault((message.epoch, message.index), message)

@@ -23,9 +23,7 @@ Floats = NDArray[np.float64]
 MS = 200  # ticks
 SAME = 5e-4  # microsteps: two ways of computing a path's position
 BRAKED = 5e-3  # the same of a brake, whose velocity is a whole number of 2^-16 microsteps/ms
-COUNTED = (
-    0.8  # the same of both by whole microsteps: half of one, and a tick or two of a step's way
-)
+COUNTED = 0.8  # of both, by whole microsteps: half of one, and a step's ticks on its way
 STILL = 0.02  # microsteps, within which a path ends as a brake would
 UNSURE = 12  # samples by which a slow path and its brake may look the same
 UNSURE_COUNTED = 80  # the same, by whole microsteps
