@@ -1,4 +1,4 @@
-"""Takes the pictures in the docs from the running program: python docs/screenshots.py"""
+"""Takes the pictures in the docs from the running program: python docs/screenshots.py [NAME ..]"""
 
 from __future__ import annotations
 
@@ -23,7 +23,15 @@ PICTURES: dict[str, tuple[str, list[tuple[float, float, float]]]] = {
         [(x, y, -320) for x, y in [(70, 30), (20, 80), (-60, 40), (-30, -50), (60, -30), (90, 20)]],
     ),
     "fivebar": ("fivebar", [(60, 0, -150), (80, 0, -190), (-70, 0, -210), (-50, 0, -170)]),
+    "workspace": ("stm32", []),
+    "fivebar-workspace": ("fivebar", []),
 }
+# What is chosen in the scene's folder "Workspace" before a picture is taken, and a colour.
+SHOWN: dict[str, tuple[list[str], str]] = {
+    "workspace": (["Reach", "Section X", "Section Z"], "Conditioning"),
+    "fivebar-workspace": (["Reach", "Coloured plane"], "Conditioning"),
+}
+PENDANT = "390x844"  # where the scene has no panel
 FLAGS = [
     "--no-sandbox",
     "--use-angle=swiftshader",
@@ -34,8 +42,8 @@ LONG = 60_000  # ms
 
 
 def main() -> None:
-    for picture, (robot, way) in PICTURES.items():
-        take_all(picture, robot, way)
+    for picture in sys.argv[1:] or PICTURES:
+        take_all(picture, *PICTURES[picture])
 
 
 def take_all(picture: str, robot: str, way: list[tuple[float, float, float]]) -> None:
@@ -53,6 +61,8 @@ def take_all(picture: str, robot: str, way: list[tuple[float, float, float]]) ->
                 )
                 for theme in THEMES:
                     for name, size in SIZES.items():
+                        if name == PENDANT and picture in SHOWN:
+                            continue
                         take(browser, url, theme, size, way, f"{picture}-{name}-{theme}.png")
         finally:
             server.terminate()
@@ -75,9 +85,22 @@ def take(
     page.frame_locator("#scene").locator("canvas").first.wait_for(timeout=LONG)
     for place in way:
         go(page, url, place)
+    if picture := SHOWN.get(name.split("-1280x800")[0]):
+        show_workspace(page, *picture)
     page.wait_for_timeout(9000)  # for the pictures only: drawing catches up, notices go
     page.screenshot(path=DOCS / name)
     context.close()
+
+
+def show_workspace(page: Page, layers: list[str], colours: str) -> None:
+    scene = page.frame_locator("#scene")
+    for folder in ("Angles", "Position", "Robot", "Workspace"):  # the last one is opened
+        scene.get_by_text(folder, exact=True).first.click()
+    for layer in layers:
+        scene.get_by_label(layer, exact=True).check()
+    scene.get_by_label("Colours", exact=True).click()
+    scene.get_by_role("option", name=colours, exact=True).click()
+    scene.get_by_text("drawn within").wait_for(timeout=LONG)
 
 
 def go(page: Page, url: str, place: tuple[float, float, float]) -> None:

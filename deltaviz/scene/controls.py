@@ -29,8 +29,10 @@ class Controls:
         self._retired: deque[str] = deque(maxlen=_RETIRED_KEPT)
         self.draggable: frozenset[str] = frozenset()
 
-    def add_slider(self, handle: GuiSliderHandle[float]) -> None:
-        """A slider that steers; its range is asked anew for every value."""
+    def add_slider(
+        self, handle: GuiSliderHandle[float], judgement: Judgement = Judgement.STEERS
+    ) -> None:
+        """Its range is asked anew for every value."""
 
         def accepts(value: object) -> bool:
             if isinstance(value, bool) or not isinstance(value, (int, float)):
@@ -38,19 +40,22 @@ class Controls:
             slack = 1e-6 * (handle.max - handle.min)  # the page rounds
             return math.isfinite(value) and handle.min - slack <= value <= handle.max + slack
 
-        self._inputs[uuid_of(handle)] = (Judgement.STEERS, accepts)
+        self._inputs[uuid_of(handle)] = (judgement, accepts)
 
     def add_toggle(self, handle: GuiCheckboxHandle) -> None:
         self._inputs[uuid_of(handle)] = (Judgement.SHOWS, lambda value: isinstance(value, bool))
 
-    def add_choice(self, handle: GuiDropdownHandle[str]) -> None:
-        """A choice that steers."""
+    def add_choice(
+        self, handle: GuiDropdownHandle[str], judgement: Judgement = Judgement.STEERS
+    ) -> None:
         self._inputs[uuid_of(handle)] = (
-            Judgement.STEERS,
+            judgement,
             lambda value: isinstance(value, str) and value in handle.options,
         )
 
-    def retire(self, handle: GuiSliderHandle[float] | GuiCheckboxHandle) -> None:
+    def retire(
+        self, handle: GuiSliderHandle[float] | GuiCheckboxHandle | GuiDropdownHandle[str]
+    ) -> None:
         """The input was removed; what is still on the way for it is harmless."""
         if self._inputs.pop(uuid_of(handle), None) is not None:
             self._retired.append(uuid_of(handle))

@@ -32,6 +32,8 @@ from deltaviz.scene.stage import Stage
 from deltaviz.scene.trail import Trail
 from deltaviz.scene.units import metres
 from deltaviz.scene.viewer import HANDLE, Display, Viewer
+from deltaviz.scene.workspace.orders import Reply
+from deltaviz.scene.workspace.worker import Worker
 
 _log = logging.getLogger(__name__)
 
@@ -51,6 +53,7 @@ class Scene:
         self._viewers: dict[int, Viewer] = {}
         self._notes: dict[str, float] = {}
         self._frames = 0
+        self._quick, self._patient = Worker(self._computed), Worker(self._computed)
         self._shown: Snapshot | None = None
 
     def start(self) -> None:
@@ -71,6 +74,8 @@ class Scene:
     def close(self) -> None:
         """Stop following and end viser's threads."""
         self._running.cancel()
+        self._quick.close()
+        self._patient.close()
         self._listener.close()
 
     def router(
@@ -113,7 +118,7 @@ class Scene:
         """Show a sentence in this session's panel for a while. From any thread."""
         self._soon(self._show_note, session, text)
 
-    def _soon(self, call: Callable[..., None], *args: str) -> None:
+    def _soon(self, call: Callable[..., None], *args: object) -> None:
         """In viser's event loop; nowhere, once that is closed."""
         with contextlib.suppress(RuntimeError):
             self._loop.call_soon_threadsafe(call, *args)
@@ -142,6 +147,7 @@ class Scene:
             self._show(self._machine.snapshot)
         for viewer in self._viewers.values():
             viewer.hold(model)
+            viewer.reach.set_robot(robot)
 
     async def _follow(self) -> None:
         """Show the newest snapshot, 60 times a second; poses are shown, never guessed."""
@@ -214,6 +220,9 @@ class Scene:
             panel=self._panel,
             controls=self._controls,
             dragging=self._dragging,
+            robot=self._robot,
+            quick=self._quick.order,
+            patient=self._patient.order,
         )
         self._viewers[client.client_id] = viewer
         viewer.set_steering(self._may_steer(session, self._machine.snapshot), self._model)
@@ -223,6 +232,16 @@ class Scene:
         viewer = self._viewers.pop(client.client_id, None)
         if viewer is not None:
             viewer.leave()
+
+    def _computed(self, reply: Reply) -> None:
+        """From the workers' threads."""
+        self._soon(self._show_computed, reply)
+
+    def _show_computed(self, reply: Reply) -> None:
+        number, topic = reply.key
+        viewer = self._viewers.get(number)
+        if viewer is not None:
+            viewer.reach.take(topic, reply.picture)
 
     def _apply_theme(self, session: str) -> None:
         for viewer in self._viewers.values():

@@ -5,17 +5,19 @@ from __future__ import annotations
 import html
 import math
 from collections.abc import Callable, Coroutine
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import viser
 from viser import ClientHandle, GuiCheckboxHandle, GuiEvent
 
+from deltaviz.robots import Robot
 from deltaviz.scene import colours, inner
 from deltaviz.scene.controls import Controls
 from deltaviz.scene.drag import BINDINGS, Dragging
 from deltaviz.scene.panel import Panel
 from deltaviz.scene.robot_model import RobotModel
+from deltaviz.scene.workspace.shown import Choices, Send, WorkspaceShown
 
 HANDLE = "/robot/effector/handle"
 
@@ -35,6 +37,7 @@ class Display:
     shadows: bool = False
     reflections: bool = False
     dark: bool = False
+    reach: Choices = field(default_factory=Choices)
 
 
 _LAYERS = {"trail": "/trail", "ghost": "/ghost", "labels": "/labels", "workspace": "/workspace"}
@@ -42,7 +45,7 @@ _TITLES = {
     "trail": "Trail",
     "ghost": "Ghost at the target",
     "labels": "Joint labels",
-    "workspace": "Workspace",
+    "workspace": "Allowed zone",
     "shadows": "Shadows",
     "reflections": "Reflections",
 }
@@ -60,6 +63,9 @@ class Viewer:
         panel: Panel,
         controls: Controls,
         dragging: Dragging,
+        robot: Robot,
+        quick: Send,
+        patient: Send,
     ) -> None:
         self.client = client
         self.session = session
@@ -71,6 +77,9 @@ class Viewer:
         self._handle: viser.IcosphereHandle | None = None
         self._handle_scale = 1.0
         self._toggles = self._add_toggles()
+        self.reach = WorkspaceShown(
+            client, controls, display.reach, robot, quick=quick, patient=patient
+        )
         self._note = client.gui.add_html("", visible=False, order=-1.0)
         self.apply_theme()
         for choice in (*_LAYERS, "shadows", "reflections"):
@@ -80,6 +89,7 @@ class Viewer:
         """The browser is gone."""
         for toggle in self._toggles:
             self._controls.retire(toggle)
+        self.reach.leave()
 
     def apply_theme(self) -> None:
         self.client.gui.configure_theme(

@@ -151,6 +151,44 @@ def test_a_slider_posts_angles_and_the_others_follow(page: Page, stand: Any) -> 
     assert float(box.nth(5).input_value()) == pytest.approx(stand.machine.snapshot.xyz[2], abs=0.2)
 
 
+def look(page: Page) -> bytes:
+    """The picture, when it is still."""
+    last = b""
+    canvas: Any = picture(page)
+    while (now := page.screenshot(clip=canvas)) != last:
+        last = now
+        page.wait_for_timeout(400)
+    return last
+
+
+def other_than(before: bytes, page: Page) -> bytes:
+    """The picture, still again, when it has changed."""
+    for _ in range(100):
+        if (now := look(page)) != before:
+            return now
+    raise AssertionError("the picture stayed as it was")
+
+
+def test_the_workspace_is_shown_and_cut_and_nothing_moves(page: Page, stand: Any) -> None:
+    page.get_by_text("Angles", exact=True).click()
+    page.get_by_text("Position", exact=True).click()
+    page.get_by_text("Workspace", exact=True).click()
+    bare = look(page)
+    page.get_by_label("Reach", exact=True).check()
+    page.get_by_text("drawn within").wait_for()
+    with_boundary = look(page)
+    page.get_by_label("Section Z", exact=True).check()
+    cut = other_than(with_boundary, page)
+    row = page.locator(".mantine-Flex-root:has(> div label)", has_text="mm along Z").last
+    row.get_by_role("slider").focus()
+    for _ in range(3):
+        page.keyboard.press("PageDown")
+        page.keyboard.press("ArrowLeft")
+    moved = other_than(cut, page)
+    assert len({bare, with_boundary, cut, moved}) == 4
+    assert stand.machine.posted == []
+
+
 def test_a_browser_that_goes_ends_its_drag(page: Page, stand: Any) -> None:
     x, y = on_screen(page, stand, stand.machine.snapshot.xyz)
     hover(page, stand, x, y)

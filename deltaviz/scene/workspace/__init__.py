@@ -1,0 +1,1 @@
+"""The workspace in the scene: computed in processes of its own, drawn for one browser."""

@@ -1,0 +1,286 @@
+"""The workspace as one browser sees it: its folder in the panel, what it orders, what is drawn.
+
+It looks at a robot and never speaks to the machine: nothing here can move anything.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Coroutine
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from viser import ClientHandle, GuiCheckboxHandle, GuiDropdownHandle, GuiEvent, GuiSliderHandle
+
+from deltaviz.mechanism import FiveBar, RotaryDelta
+from deltaviz.robots import Robot
+from deltaviz.robots.coordinates import is_planar
+from deltaviz.scene.controls import Controls, Judgement
+from deltaviz.scene.workspace import tasks
+from deltaviz.scene.workspace.draw import Drawing
+from deltaviz.scene.workspace.measures import NAMES, PLAIN
+from deltaviz.scene.workspace.orders import Key
+from deltaviz.scene.workspace.pictures import Failed, Fitted, Picture, Section, Skin
+from deltaviz.scene.workspace.text import Told
+
+AXES = "XYZ"
+REST = 0.25  # s after the last change, when the boundary is refined
+
+Send = Callable[[Key, tasks.Task | None], None]
+Handle = GuiCheckboxHandle | GuiSliderHandle[float] | GuiDropdownHandle[str]
+
+
+@dataclass
+class Choices:
+    """What one session chose; kept while its browser reconnects."""
+
+    boundary: bool = False
+    fitted: bool = False
+    measure: str = PLAIN
+    sections: set[int] = field(default_factory=set[int])
+    levels: dict[int, float] = field(default_factory=dict[int, float])
+
+
+class WorkspaceShown:
+    """Runs in viser's event loop only. `quick` and `patient` order what takes milliseconds and
+    what takes seconds."""
+
+    def __init__(
+        self,
+        client: ClientHandle,
+        controls: Controls,
+        choices: Choices,
+        robot: Robot,
+        *,
+        quick: Send,
+        patient: Send,
+    ) -> None:
+        self._client = client
+        self._controls = controls
+        self._choices = choices
+        self._quick, self._patient = quick, patient
+        self._refining: asyncio.TimerHandle | None = None
+        self._drawing = Drawing(client.scene)
+        self._folder = client.gui.add_folder("Workspace", expand_by_default=False)
+        self._handles: list[Handle] = []
+        self._sliders: dict[int, GuiSliderHandle[float]] = {}
+        self._start(robot)
+
+    def set_robot(self, robot: Robot) -> None:
+        """Another robot: other sections; where they stood means nothing to it."""
+        self._stop()
+        self._choices.levels.clear()
+        self._start(robot)
+
+    def leave(self) -> None:
+        """The browser is gone, and with it what was drawn."""
+        self._cancel_all()
+        for handle in self._handles:
+            self._controls.retire(handle)
+
+    def take(self, topic: str, picture: Picture) -> None:
+        """A picture that was ordered has come."""
+        match picture:
+            case Skin():
+                if self._choices.boundary and not self._is_older(picture):
+                    self._drawing.skin(picture)
+                    self._told.skin = picture
+            case Section():
+                if picture.axis in self._choices.sections:
+                    self._drawing.section(picture)
+                    self._told.scale = picture.scale
+                    self._fit_slider(picture)
+            case Fitted():
+                if self._choices.fitted:
+                    self._drawing.fitted(picture)
+                    self._told.fitted = picture
+            case Failed(text):
+                self._told.problem = text
+        self._told.waiting.discard(topic)
+        self._tell()
+
+    def _is_older(self, skin: Skin) -> bool:
+        """A coarse boundary that comes after a fine one."""
+        fine = skin.deviation is not None or skin.reason is not None
+        self._refined = self._refined or fine
+        return self._refined and not fine
+
+    def _start(self, robot: Robot) -> None:
+        self._robot = robot
+        self._told = Told(planar=is_planar(robot))
+        with self._folder:
+            self._add_inputs()
+            self._readout = self._client.gui.add_html("")
+        self._tell()
+        self._order_boundary()
+        self._order_fitted()
+        self._order_sections()
+
+    def _stop(self) -> None:
+        self._cancel_all()
+        self._drawing.clear()
+        for handle in self._handles:
+            self._controls.retire(handle)
+            handle.remove()
+        self._readout.remove()
+        self._handles.clear()
+        self._sliders.clear()
+
+    # The panel's inputs.
+
+    def _add_inputs(self) -> None:
+        planar = is_planar(self._robot)
+        body = "Largest rectangle" if planar else "Largest cylinder"
+        self._add_toggle("Reach", self._choices.boundary, self._set_boundary)
+        self._add_toggle(body, self._choices.fitted, self._set_fitted)
+        colour = self._client.gui.add_dropdown(
+            "Colours", NAMES, initial_value=self._choices.measure
+        )
+        self._controls.add_choice(colour, Judgement.SHOWS)
+        colour.on_update(self._told_of(self._set_measure))
+        self._handles.append(colour)
+        for axis in (1,) if planar else range(3):
+            self._add_section(axis, planar=planar)
+
+    def _add_section(self, axis: int, *, planar: bool) -> None:
+        name = "Coloured plane" if planar else f"Section {AXES[axis]}"
+
+        def choose(wanted: bool) -> None:
+            (self._choices.sections.add if wanted else self._choices.sections.discard)(axis)
+            self._order_section(axis)
+
+        def move(level: float) -> None:
+            self._choices.levels[axis] = level
+            self._order_section(axis)
+
+        self._add_toggle(name, axis in self._choices.sections, choose)
+        if planar:
+            return
+        low, high = roughly(self._robot, axis)
+        level = self._choices.levels.setdefault(axis, round((low + high) / 2))
+        slider = self._client.gui.add_slider(
+            f"mm along {AXES[axis]}",
+            min=min(low, level),
+            max=max(high, level),
+            step=1.0,
+            initial_value=level,
+        )
+        self._controls.add_slider(slider, Judgement.SHOWS)
+        slider.on_update(self._told_of(move))
+        self._handles.append(slider)
+        self._sliders[axis] = slider
+
+    def _add_toggle(self, label: str, value: bool, chosen: Callable[[bool], None]) -> None:
+        toggle = self._client.gui.add_checkbox(label, value)
+        self._controls.add_toggle(toggle)
+        toggle.on_update(self._told_of(chosen))
+        self._handles.append(toggle)
+
+    @staticmethod
+    def _told_of(
+        change: Callable[[Any], None],
+    ) -> Callable[[GuiEvent[Any]], Coroutine[None, None, None]]:
+        async def update(event: GuiEvent[Any]) -> None:
+            if event.client is not None:
+                change(event.target.value)
+
+        return update
+
+    def _fit_slider(self, section: Section) -> None:
+        """To what the workspace turned out to span."""
+        slider = self._sliders.get(section.axis)
+        if slider is None:
+            return
+        low, high = (float(round(end)) for end in section.span)
+        low, high = min(low, slider.value), max(high, slider.value)
+        if (slider.min, slider.max) != (low, high):
+            slider.min, slider.max = low, high
+
+    # What is ordered.
+
+    def _set_boundary(self, wanted: bool) -> None:
+        self._choices.boundary = wanted
+        self._order_boundary()
+
+    def _set_fitted(self, wanted: bool) -> None:
+        self._choices.fitted = wanted
+        self._order_fitted()
+
+    def _set_measure(self, name: str) -> None:
+        self._choices.measure = name
+        self._told.measure = name
+        self._order_sections()
+
+    def _order_boundary(self) -> None:
+        self._cancel("boundary")
+        self._refined = False
+        if self._choices.boundary:
+            self._order(self._quick, "boundary", tasks.Coarse(self._robot))
+            loop = asyncio.get_running_loop()
+            self._refining = loop.call_later(REST, self._refine)
+        else:
+            self._told.skin = None
+            self._drawing.skin(None)
+        self._tell()
+
+    def _refine(self) -> None:
+        self._order(self._patient, "boundary", tasks.Fine(self._robot))
+
+    def _order_fitted(self) -> None:
+        self._cancel("fitted")
+        self._told.fitted = None
+        self._drawing.fitted(None)
+        if self._choices.fitted:
+            self._order(self._patient, "fitted", tasks.Fit(self._robot))
+        self._tell()
+
+    def _order_sections(self) -> None:
+        self._told.measure = self._choices.measure
+        for axis in (1,) if is_planar(self._robot) else range(3):
+            self._order_section(axis)
+
+    def _order_section(self, axis: int) -> None:
+        name = AXES[axis]
+        if axis in self._choices.sections:
+            level = 0.0 if is_planar(self._robot) else self._choices.levels[axis]
+            cut = tasks.Cut(self._robot, axis, level, self._choices.measure)
+            self._order(self._quick, name, cut)
+        else:
+            self._cancel(name)
+            self._drawing.no_section(axis)
+            if not self._choices.sections:
+                self._told.scale = None
+        self._tell()
+
+    def _order(self, send: Send, topic: str, task: tasks.Task) -> None:
+        self._told.problem = None
+        self._told.waiting.add(topic)
+        send((self._client.client_id, topic), task)
+
+    def _cancel_all(self) -> None:
+        for topic in ("boundary", "fitted", *AXES):
+            self._cancel(topic)
+
+    def _cancel(self, topic: str) -> None:
+        if topic == "boundary" and self._refining is not None:
+            self._refining.cancel()
+            self._refining = None
+        self._told.waiting.discard(topic)
+        for send in (self._quick, self._patient):
+            send((self._client.client_id, topic), None)
+
+    def _tell(self) -> None:
+        content = self._told.html()
+        if self._readout.content != content:
+            self._readout.content = content
+
+
+def roughly(robot: Robot, axis: int) -> tuple[float, float]:
+    """What the workspace cannot exceed along an axis, in mm, from the arms' lengths alone."""
+    zone, mechanism = robot.zone, robot.mechanism
+    assert isinstance(mechanism, RotaryDelta | FiveBar)
+    reach = float(np.max(np.add(mechanism.upper_arm, mechanism.forearm)))
+    if axis == 2:
+        return float(round(min(-reach, zone.z[0]))), float(round(max(0.0, zone.z[1])))
+    return -float(round(reach)), float(round(reach))

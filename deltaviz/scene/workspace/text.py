@@ -1,0 +1,70 @@
+"""What is told of the workspace in words: its size, why it is empty, the key to the colours."""
+
+from __future__ import annotations
+
+import html
+from dataclasses import dataclass, field
+
+from deltaviz.scene.workspace.measures import PLAIN, css_gradient, measure_named
+from deltaviz.scene.workspace.pictures import Fitted, Skin
+
+_NAMES = {"boundary": "the reach", "fitted": "the largest body", "X": "", "Y": "", "Z": ""}
+
+
+@dataclass
+class Told:
+    """What is known, of one browser's choices."""
+
+    planar: bool
+    measure: str = PLAIN
+    skin: Skin | None = None
+    fitted: Fitted | None = None
+    scale: tuple[float, float] | None = None
+    problem: str | None = None
+    waiting: set[str] = field(default_factory=set[str])
+
+    def html(self) -> str:
+        lines = [html.escape(line) for line in self.lines()]
+        body = "".join(f"<div>{line}</div>" for line in lines) + self._key()
+        return (
+            "<div style='font-size:12px;line-height:1.4;padding:4px 8px;"
+            f"font-variant-numeric:tabular-nums'>{body}</div>"
+        )
+
+    def lines(self) -> list[str]:
+        lines = [self.problem] if self.problem else []
+        if self.skin is not None:
+            lines.append(self._reach(self.skin))
+        if self.fitted is not None:
+            lines.append(self._fitted(self.fitted))
+        named = sorted({_NAMES[topic] for topic in self.waiting} - {""})
+        if named:
+            lines.append(f"Computing {' and '.join(named)} …")
+        return lines
+
+    def _reach(self, skin: Skin) -> str:
+        if skin.reason is not None:
+            return f"The workspace is empty. {skin.reason}"
+        size = f"{skin.size / 100:.4g} cm²" if self.planar else f"{skin.size / 1e6:.3g} l"
+        if skin.deviation is None:
+            return f"Reach: about {size}, drawn coarsely."
+        return f"Reach: {size}, drawn within {skin.deviation:.1f} mm."
+
+    def _fitted(self, fitted: Fitted) -> str:
+        name = "rectangle" if self.planar else "cylinder"
+        if fitted.shape is None:
+            return f"No {name} fits."
+        return f"Largest {fitted.shape}."
+
+    def _key(self) -> str:
+        measure = measure_named(self.measure)
+        if measure is None or self.scale is None:
+            return ""
+        unit = f", {measure.unit}" if measure.unit else ""
+        low, high = (f"{end:.3g}" for end in self.scale)
+        return (
+            f"<div style='margin-top:6px'>{measure.name}{unit}</div>"
+            f"<div style='height:10px;border-radius:3px;background:{css_gradient()}'></div>"
+            "<div style='display:flex;justify-content:space-between'>"
+            f"<span>{low}</span><span>{high}</span></div>"
+        )

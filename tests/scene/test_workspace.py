@@ -1,0 +1,212 @@
+"""The workspace in the scene, spoken by hand through the gateway: what is shown, and that nothing
+of it moves the robot."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+
+from deltaviz.mechanism import RotaryDelta
+from deltaviz.robots import Robot
+from deltaviz.robots.workspace import Cylinder
+from deltaviz.scene.workspace.orders import Reply
+from deltaviz.scene.workspace.pictures import Failed, Fitted, Section, Skin
+from deltaviz.scene.workspace.tasks import Coarse, Cut, Fit
+from deltaviz.scene.workspace.worker import Worker
+
+Visit = Callable[[str | None], Any]
+LONG = 120.0  # s; a process that computes has to load first
+
+
+def choose(visitor: Any, label: str, value: Any) -> None:
+    visitor.send(type="GuiUpdateMessage", uuid=visitor.input(label), updates={"value": value})
+
+
+def drawn(name: str) -> Callable[[dict[str, Any]], bool]:
+    return lambda m: m.get("name") == name and "props" in m
+
+
+def told(text: str) -> Callable[[dict[str, Any]], bool]:
+    return lambda m: text in str(m.get("updates", {}).get("content"))
+
+
+@pytest.fixture
+def viewer(stand: Any, visit: Visit) -> Any:
+    """Of one that only watches: looking is for everyone."""
+    stand.machine.be_held_by("anna")
+    visitor = visit("boris")
+    visitor.look()
+    stand.eventually(lambda: stand.server.get_clients())
+    return visitor
+
+
+def test_the_boundary_is_shown_at_once_then_refined_and_the_robot_stays(
+    stand: Any, viewer: Any
+) -> None:
+    choose(viewer, "Reach", True)
+    coarse = viewer.read(drawn("/reach/boundary"), LONG)
+    fine = viewer.read(drawn("/reach/boundary"), LONG)
+    for mesh in (coarse, fine):
+        assert 0.0 < mesh["props"]["opacity"] < 0.5
+    viewer.read(told("drawn within"), LONG)
+    choose(viewer, "Reach", False)
+    viewer.read(lambda m: m["type"] == "RemoveSceneNodeMessage" and m["name"] == "/reach/boundary")
+    assert stand.machine.posted == []
+
+
+def test_sections_follow_their_sliders_in_a_colour_that_has_a_key(stand: Any, viewer: Any) -> None:
+    choose(viewer, "Colours", "Resolution")
+    choose(viewer, "Section Z", True)
+    viewer.read(drawn("/reach/section_z"), LONG)
+    viewer.read(told("Resolution, mm per microstep"), LONG)
+    for level in (-300.0, -320.0):
+        choose(viewer, "mm along Z", level)
+        viewer.read(drawn("/reach/section_z"), LONG)
+    assert stand.machine.posted == []
+
+
+@pytest.mark.parametrize(
+    ("label", "value"),
+    [
+        ("Reach", 1.0),
+        ("Reach", "yes"),
+        ("Colours", "Beauty"),
+        ("Colours", 3),
+        ("mm along X", math.nan),
+        ("mm along X", 1e4),
+        ("mm along X", True),
+        ("Section X", "x"),
+    ],
+)
+def test_garbage_for_the_workspace_closes_the_socket(
+    stand: Any, viewer: Any, label: str, value: Any
+) -> None:
+    choose(viewer, label, value)
+    assert viewer.closed()[0] == 1008
+    assert stand.machine.posted == []
+
+
+def test_one_browser_s_workspace_is_not_another_s(stand: Any, viewer: Any, visit: Visit) -> None:
+    other = visit("clara")
+    other.look()
+    stand.eventually(lambda: len(stand.server.get_clients()) == 2)
+    uuid = viewer.input("Reach")
+    other.send(type="GuiUpdateMessage", uuid=uuid, updates={"value": True})
+    choose(viewer, "Section X", True)
+    viewer.read(drawn("/reach/section_x"), LONG)
+    assert not [m for m in viewer.seen if m.get("name") == "/reach/boundary"]
+
+
+def test_a_planar_robot_shows_its_outline_in_its_plane(planar_robot: Robot) -> None:
+    (skin,) = Coarse(planar_robot).pictures()
+    assert isinstance(skin, Skin)
+    assert not skin.vertices[:, 1].any()
+    corners = skin.vertices[skin.faces].astype(float)
+    areas = np.linalg.norm(np.cross(*np.diff(corners, axis=1).transpose(1, 0, 2)), axis=-1) / 2
+    assert areas.sum() * 1e6 == pytest.approx(skin.size, rel=0.03)
+    assert np.isin(skin.edges.reshape(-1, 3), skin.vertices).all()
+    (cut,) = Cut(planar_robot, 1, 0.0, "Conditioning").pictures()
+    assert isinstance(cut, Section)
+    pixel = np.prod((cut.high - cut.low)[[0, 2]] * 1000) / cut.image[..., 3].size
+    assert (cut.image[..., 3] > 127).sum() * pixel == pytest.approx(skin.size, rel=0.03)
+
+
+def test_a_section_is_filled_where_the_robot_reaches(robot: Robot) -> None:
+    (cut,) = Cut(robot, 2, -330.0, "One colour").pictures()
+    assert isinstance(cut, Section)
+    rows, columns = cut.image.shape[:2]
+    for x, y in ((0, 0), (150, -40), (-120, 90), (400, 0), (-300, 300)):
+        share = (np.array((x, y)) / 1000 - cut.low[:2]) / (cut.high - cut.low)[:2]
+        column, row = np.floor(share * (columns, rows)).astype(int)
+        if 0 <= row < rows and 0 <= column < columns:
+            theta = robot.inverse((x, y, -330.0))
+            reaches = bool(np.isfinite(theta).all())
+            assert (cut.image[row, column, 3] > 127) == reaches
+
+
+def test_an_empty_workspace_has_a_reason(robot: Robot) -> None:
+    short = RotaryDelta(
+        base_radius=115, effector_radius=75, upper_arm=20, forearm=21, azimuths_deg=(0, 120, 240)
+    )
+    (skin,) = Coarse(dataclasses.replace(robot, mechanism=short)).pictures()
+    assert isinstance(skin, Skin)
+    assert not len(skin.faces)
+    assert skin.reason
+    assert skin.reason.endswith(".")
+
+
+def test_the_largest_cylinder_is_the_analysis_s(robot: Robot) -> None:
+    (fitted,) = Fit(robot).pictures()
+    assert isinstance(fitted, Fitted)
+    assert fitted.shape is not None
+    body = fitted.shape
+    assert isinstance(body, Cylinder)
+    turns = np.linspace(0, 2 * np.pi, 60)
+    heights = np.array((0.5, body.height - 0.5)) + body.floor
+    for share, within in ((0.995, True), (1.03, False)):
+        radius = share * body.diameter / 2
+        rim = [(radius * np.cos(t), radius * np.sin(t), z) for t in turns for z in heights]
+        theta = robot.inverse(rim)
+        legal = (theta >= robot.joints.min) & (theta <= robot.joints.max)
+        assert bool(legal.all()) == within
+
+
+@dataclasses.dataclass(frozen=True)
+class Endless:
+    """Computes until it is told not to."""
+
+    def pictures(self) -> Iterator[Fitted]:
+        yield Fitted(None)
+        while True:
+            pass
+
+
+@dataclasses.dataclass(frozen=True)
+class Broken:
+    def pictures(self) -> Iterator[Fitted]:
+        raise ValueError("no such thing")
+        yield Fitted(None)
+
+
+@pytest.fixture
+def worker(stand: Any, monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[Worker, list[Reply]]]:
+    monkeypatch.setenv("PYTHONPATH", __file__.rpartition("/")[0])
+    replies: list[Reply] = []
+    worker = Worker(replies.append)
+    yield worker, replies
+    worker.close()
+
+
+def test_a_computation_is_broken_off_by_the_next_of_its_kind(
+    stand: Any, worker: tuple[Worker, list[Reply]]
+) -> None:
+    work, replies = worker
+    for number in (1, 2, 3):
+        work.order((7, "reach"), Endless())
+        stand.eventually(lambda number=number: len(replies) == number, LONG)
+    work.order((7, "reach"), None)
+    work.order((8, "reach"), Broken())
+    stand.eventually(lambda: len(replies) == 4, LONG)
+    assert [reply.number for reply in replies] == [1, 2, 3, 1]
+    assert isinstance(replies[-1].picture, Failed)
+    assert "no such thing" in replies[-1].picture.text
+
+
+def test_a_process_that_dies_is_said_and_replaced(
+    stand: Any, worker: tuple[Worker, list[Reply]]
+) -> None:
+    work, replies = worker
+    work.order((7, "reach"), Endless())
+    stand.eventually(lambda: replies, LONG)
+    first = work._process
+    assert first is not None
+    first.kill()
+    stand.eventually(lambda: isinstance(replies[-1].picture, Failed), LONG)
+    work.order((7, "reach"), Endless())
+    stand.eventually(lambda: isinstance(replies[-1].picture, Fitted), LONG)
+    assert work.pid != first.pid
