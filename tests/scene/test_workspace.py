@@ -10,10 +10,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+import viser
 
 from deltaviz.mechanism import RotaryDelta
 from deltaviz.robots import Robot
 from deltaviz.robots.workspace import Cylinder
+from deltaviz.scene.workspace.draw import Drawing
 from deltaviz.scene.workspace.orders import Reply
 from deltaviz.scene.workspace.pictures import Failed, Fitted, Section, Skin
 from deltaviz.scene.workspace.tasks import Coarse, Cut, Fit
@@ -114,6 +116,31 @@ def test_a_planar_robot_shows_its_outline_in_its_plane(planar_robot: Robot) -> N
     assert isinstance(cut, Section)
     pixel = np.prod((cut.high - cut.low)[[0, 2]] * 1000) / cut.image[..., 3].size
     assert (cut.image[..., 3] > 127).sum() * pixel == pytest.approx(skin.size, rel=0.03)
+
+
+def test_in_a_plane_the_colours_take_the_place_of_the_fill(
+    scene_api: viser.SceneApi, planar_robot: Robot
+) -> None:
+    """Two surfaces in one place would flicker."""
+    drawing = Drawing(scene_api)
+    (skin,) = Coarse(planar_robot).pictures()
+    (cut,) = Cut(planar_robot, 1, 0.0, "Conditioning").pictures()
+    assert isinstance(skin, Skin)
+    assert isinstance(cut, Section)
+
+    def filled() -> bool:
+        return scene_api.get_handle_by_name("/reach/boundary") is not None
+
+    drawing.skin(skin)
+    assert filled()
+    drawing.section(cut)
+    assert not filled()
+    drawing.skin(skin)
+    assert not filled()
+    drawing.no_section(1)
+    assert filled()
+    drawing.clear()
+    assert not filled()
 
 
 def test_a_section_is_filled_where_the_robot_reaches(robot: Robot) -> None:

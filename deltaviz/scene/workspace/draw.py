@@ -26,12 +26,15 @@ class Drawing:
     def __init__(self, scene: viser.SceneApi) -> None:
         self._scene = scene
         self._nodes: dict[str, viser.SceneNodeHandle] = {}
+        self._skin: Skin | None = None
 
     def skin(self, skin: Skin | None) -> None:
+        self._skin = None
         if skin is None or skin.reason is not None:
             self._drop(BOUNDARY, OUTLINE)
             return
-        self._mesh(BOUNDARY, Shape(skin.vertices, skin.faces), colours.REACH, _OPACITY)
+        self._skin = skin
+        self._fill()
         if len(skin.edges):
             self._nodes[OUTLINE] = self._scene.add_line_segments(
                 OUTLINE,
@@ -44,6 +47,7 @@ class Drawing:
             self._drop(OUTLINE)
 
     def section(self, section: Section) -> None:
+        self._fill(covered=True)
         name = SECTIONS[section.axis]
         self._nodes[name] = self._scene.add_mesh_trimesh(
             name, _glowing(section), cast_shadow=False, receive_shadow=False
@@ -51,6 +55,8 @@ class Drawing:
 
     def no_section(self, axis: int) -> None:
         self._drop(SECTIONS[axis])
+        if BOUNDARY not in self._nodes:
+            self._fill()
 
     def fitted(self, fitted: Fitted | None) -> None:
         if fitted is None or fitted.shape is None:
@@ -68,7 +74,19 @@ class Drawing:
         self._mesh(FITTED, shape, colours.FITTED, 0.35)
 
     def clear(self) -> None:
+        self._skin = None
         self._drop(*list(self._nodes))
+
+    def _fill(self, *, covered: bool = False) -> None:
+        """The boundary; in a plane not while a section lies in the same place."""
+        if self._skin is None:
+            return
+        planar = len(self._skin.edges) > 0
+        if planar and (covered or SECTIONS[1] in self._nodes):
+            self._drop(BOUNDARY)
+        elif not covered:
+            shape = Shape(self._skin.vertices, self._skin.faces)
+            self._mesh(BOUNDARY, shape, colours.REACH, _OPACITY)
 
     def _mesh(self, name: str, shape: Shape, colour: colours.Colour, opacity: float) -> None:
         self._nodes[name] = self._scene.add_mesh_simple(

@@ -48,7 +48,7 @@ class Told:
         size = f"{skin.size / 100:.4g} cm²" if self.planar else f"{skin.size / 1e6:.3g} l"
         if skin.deviation is None:
             return f"Reach: about {size}, drawn coarsely."
-        return f"Reach: {size}, drawn within {skin.deviation:.1f} mm."
+        return f"Reach: {size}, drawn within {max(skin.deviation, 0.1):.1f} mm."
 
     def _fitted(self, fitted: Fitted) -> str:
         name = "rectangle" if self.planar else "cylinder"
