@@ -34,6 +34,17 @@ class CommandedPath:
     def end(self) -> int:
         return int(self.begins[-1] + self.ticks[-1])
 
+    def going_on(self, ticks: int) -> CommandedPath:
+        """As if it went on with the velocity of its last knot."""
+        last, velocity = self.positions_at_knots[-1], self.velocities_at_knots[-1]
+        return CommandedPath(
+            self.counts,
+            np.append(self.begins, self.end),
+            np.append(self.ticks, ticks),
+            np.vstack([self.positions_at_knots, last + velocity * ticks]),
+            np.vstack([self.velocities_at_knots, velocity]),
+        )
+
     def positions(self, at: Ints) -> Floats:
         """(ticks, joints)."""
         piece = np.clip(np.searchsorted(self.begins, at, side="right") - 1, 0, None)

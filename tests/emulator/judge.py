@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from deltaviz.robots import Robot
 from tests.emulator.commanded_path import CommandedPath
 from tests.emulator.pulse_train import JointPulses, PulseTrain
 
@@ -14,17 +15,23 @@ Floats = NDArray[np.float64]
 WINDOW = 0.020  # s of the fit that gives velocity and acceleration
 NEAR, FAR = 2, 7  # microsteps from the path, between which a deceleration is fitted
 LEAST = 5  # steps in a window; fewer say little of the acceleration
+AFTER = 200  # ticks behind the end of a path, in which it is to stand there
+STRIDE = 0.002  # s from the start of a window to that of the next, at least
+FIT = 1.03  # what the fit may find above a limit: the steps are a tick and half a microstep coarse
 
 
-def position_error(pulses: PulseTrain, path: CommandedPath, *, after: int = 200) -> list[float]:
+def position_error(
+    pulses: PulseTrain, path: CommandedPath, *, until: int | None = None
+) -> list[float]:
     """How far each joint's count was from the path at worst, in microsteps, at any tick from the
-    start of the path until `after` ticks behind its end.
+    start of the path until the tick `until`, or a while after its end.
     """
-    at = np.arange(path.begin, path.end + after, dtype=np.int64)
+    until = path.end + AFTER if until is None else until
+    at = np.arange(path.begin, until, dtype=np.int64)
     wanted = path.positions(at)
     errors: list[float] = []
     for joint, count in enumerate(path.counts):
-        steps = pulses.joints[joint].between(path.begin, path.end + after)
+        steps = pulses.joints[joint].between(path.begin, until)
         errors.append(float(np.abs(count + steps.counts(at) - wanted[:, joint]).max()))
     return errors
 
@@ -44,7 +51,11 @@ def peaks(steps: JointPulses, *, tick_hz: int) -> Peaks:
     times = steps.ticks / tick_hz
     passed = np.cumsum(steps.directions) - steps.directions / 2
     speed = acceleration = 0.0
+    due = -np.inf
     for first, start in enumerate(times):
+        if start < due:
+            continue
+        due = start + STRIDE
         last = int(np.searchsorted(times, start + WINDOW, side="right"))
         if last - first < LEAST or times[last - 1] - start < WINDOW / 2:
             continue
@@ -53,6 +64,22 @@ def peaks(steps: JointPulses, *, tick_hz: int) -> Peaks:
         speed = max(speed, abs(slope))
         acceleration = max(acceleration, abs(2 * curve))
     return Peaks(speed, acceleration)
+
+
+def beyond_limits(
+    pulses: PulseTrain, robot: Robot, *, begin: int, end: int, tick_hz: int
+) -> list[str]:
+    """What of the steps in these ticks is faster, or quicker to change, than its joint may be."""
+    found: list[str] = []
+    for joint, per_rad in enumerate(robot.drive.microsteps_per_rad):
+        seen = peaks(pulses.joints[joint].between(begin, end), tick_hz=tick_hz)
+        for what, peak, limit in (
+            ("speed", seen.speed, robot.limits.joint.velocity[joint] * per_rad),
+            ("acceleration", seen.acceleration, robot.limits.joint.acceleration[joint] * per_rad),
+        ):
+            if peak > limit * FIT:
+                found.append(f"joint {joint}: {what} {peak / limit:.3f} of its limit")
+    return found
 
 
 def brake_began(pulses: PulseTrain, path: CommandedPath, joint: int) -> float:

@@ -11,6 +11,7 @@ import re
 import struct
 import subprocess
 import sys
+import time
 from tempfile import TemporaryFile
 
 STEP_PINS = 8  # PE8 to PE11: STEP of joints 1 to 4; PE12 to PE15: their DIR
@@ -18,6 +19,8 @@ _TIMER_FLAG = b"40000010"  # TIM2_SR, cleared once in each interrupt
 _PINS = b"40021018"  # GPIOE_BSRR
 _CHANGE = struct.Struct("<QB")
 _AT_ONCE = 1 << 16  # bytes
+_LOOK = 0.02  # s
+PATIENCE = 60.0  # s, of a loaded machine
 _WRITE = re.compile(b"addr 0x(" + _TIMER_FLAG + b"|" + _PINS + b") value 0x([0-9a-f]+) ")
 
 
@@ -28,7 +31,7 @@ class Reduction:
 
     def __init__(self) -> None:
         self.tick = 0
-        self._levels = 0
+        self.levels = 0
         self._partial = b""
 
     def feed(self, data: bytes) -> list[tuple[int, int]]:
@@ -40,9 +43,9 @@ class Reduction:
                 self.tick += 1
                 continue
             bits = int(value, 16)
-            levels = (self._levels & ~(bits >> 16 + STEP_PINS) | bits >> STEP_PINS) & 0xFF
-            if levels != self._levels:
-                self._levels = levels
+            levels = (self.levels & ~(bits >> 16 + STEP_PINS) | bits >> STEP_PINS) & 0xFF
+            if levels != self.levels:
+                self.levels = levels
                 changes.append((self.tick, levels))
         return changes
 
@@ -64,18 +67,31 @@ class PinTrace:
     def finish(self) -> tuple[list[tuple[int, int]], int]:
         """After QEMU has ended: all changes, and the last tick."""
         assert self._reader.wait() == 0
-        self._reduced.seek(0)
-        *changes, (last, _) = _CHANGE.iter_unpack(self._reduced.read())
+        changes = self._read()
         self._reduced.close()
-        return changes, last
+        return changes, changes[-1][0]
+
+    def until(self, tick: int) -> list[tuple[int, int]]:
+        """All changes so far, as soon as they reach `tick`."""
+        end = time.monotonic() + PATIENCE
+        while not (changes := self._read()) or changes[-1][0] < tick:
+            assert self._reader.poll() is None, "the trace has ended"
+            assert time.monotonic() < end, f"the trace does not come to tick {tick}"
+            time.sleep(_LOOK)
+        return changes
+
+    def _read(self) -> list[tuple[int, int]]:
+        """Besides the changes, how far each reading came, with the levels as they were."""
+        size = os.fstat(self._reduced.fileno()).st_size // _CHANGE.size * _CHANGE.size
+        return list(_CHANGE.iter_unpack(os.pread(self._reduced.fileno(), size, 0)))
 
 
 def main() -> None:
     reduction = Reduction()
     while data := os.read(0, _AT_ONCE):
-        changes = reduction.feed(data)
-        sys.stdout.buffer.write(b"".join(_CHANGE.pack(*change) for change in changes))
-    sys.stdout.buffer.write(_CHANGE.pack(reduction.tick, 0))
+        told = [*reduction.feed(data), (reduction.tick, reduction.levels)]
+        sys.stdout.buffer.write(b"".join(_CHANGE.pack(*each) for each in told))
+        sys.stdout.buffer.flush()
 
 
 if __name__ == "__main__":

@@ -13,16 +13,9 @@ from tests.emulator.commanded_path import CommandedPath
 from tests.emulator.emulated_board import EmulatedBoard
 from tests.emulator.pulse_train import PulseTrain
 
-FIT = 1.03  # what the fit may find above a limit: the steps are a tick and half a microstep coarse
-
 
 def assert_within_limits(pulses: PulseTrain, board: EmulatedBoard, begin: int, end: int) -> None:
-    limits, robot = board.robot.limits.joint, board.robot
-    for joint, per_rad in enumerate(robot.drive.microsteps_per_rad):
-        steps = pulses.joints[joint].between(begin, end)
-        peaks = judge.peaks(steps, tick_hz=board.tick_hz)
-        assert peaks.speed <= limits.velocity[joint] * per_rad * FIT
-        assert peaks.acceleration <= limits.acceleration[joint] * per_rad * FIT
+    assert not judge.beyond_limits(pulses, board.robot, begin=begin, end=end, tick_hz=board.tick_hz)
 
 
 def assert_commanded(pulses: PulseTrain, path: CommandedPath, board: EmulatedBoard) -> None:
