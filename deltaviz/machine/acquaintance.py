@@ -1,8 +1,9 @@
-"""What a board that is met again has kept: told to the person who connected it."""
+"""What a board has gone through that is met, or met again: told to the person who connected it."""
 
 from __future__ import annotations
 
 from deltaviz.link.session import Session
+from deltaviz.machine import sentences
 
 
 class Acquaintance:
@@ -24,13 +25,19 @@ class Acquaintance:
 
     def greet(self, link: str, session: Session) -> str | None:
         """What to say of the board of a session that has just become ready; None: nothing."""
-        if session.board is None or link != self._link or not self._homed:
+        if session.board is None:
             return None
+        braked = sentences.BRAKED_ALONE.get(session.board.last_stop)
+        if link != self._link or not self._homed:
+            if braked is None:
+                return None
+            return f"Before this, the board braked by itself: {braked}. Nothing was resumed."
         same = session.board.boot == self._boot
         if session.homed:
+            alone = "" if braked is None else f"braked by itself ({braked}) and "
             return (
-                "Connected again: the board kept its position, the robot is still homed. Nothing "
-                "was resumed."
+                f"Connected again: the board {alone}kept its position, the robot is still homed. "
+                "Nothing was resumed."
                 if same
                 else None
             )

@@ -39,6 +39,14 @@ NEVER_BEGAN = (
     "connect anew."
 )
 
+# Of a board that stopped while nobody was there to hear why: "it braked by itself: ..."
+BRAKED_ALONE: Final[Mapping[StopCause, str]] = {
+    StopCause.UNDERRUN: "it ran out of motion, and no more came",
+    StopCause.LEASE: "it did not hear from a computer for 150 ms",
+    StopCause.BAD_SEGMENT: "it refused a motion",
+    StopCause.LIMIT_SWITCH: "an arm reached its end switch",
+}
+
 FAULT: Final[Mapping[Fault, str]] = {
     Fault.LIMIT_SWITCH: "An arm reached its end switch. Move it away by hand, then reset and home.",
     Fault.HOMING_NO_SWITCH: (

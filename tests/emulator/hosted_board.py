@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
+from random import Random
 
 import numpy as np
 
@@ -16,6 +18,7 @@ from deltaviz.link.emulator.wire_pair import wire_pair
 from deltaviz.robots import Robot
 from tests.emulator import judge
 from tests.emulator.motions import Motion, motions
+from tests.emulator.overheard import Stopped
 from tests.emulator.pin_trace import PinTrace
 from tests.emulator.pulse_train import PulseTrain, pulse_train
 from tests.emulator.wire import Wire
@@ -81,6 +84,19 @@ class HostedBoard:
         passed = self.wire.passed[self._born :]
         return motions(passed, ticks_per_ms=self.wire.ticks_per_ms)
 
+    def rested(self, epoch: int) -> int:
+        """When it came to rest after what has stopped this epoch."""
+        stops = self.wire.all(Stopped, after=self._born)
+        return next(stopped.now for stopped in stops if stopped.epoch == epoch)
+
+    @property
+    def offsets(self) -> list[int]:
+        """How far, at rest, each arm is from its count: since homing always the same, by at most a
+        microstep, as long as no step is lost.
+        """
+        arms, counts = self.bench.state().arms, self.wire.telemetry.counts
+        return [arm - count for arm, count in zip(arms, counts, strict=False)]
+
     def close(self) -> None:
         self.wire.close()
         self._emulator.close()
@@ -98,6 +114,37 @@ def assert_obeyed(board: HostedBoard, pulses: PulseTrain, motion: Motion) -> Non
     until = motion.until + board.tick_hz  # the longest brake takes less
     limits = {"begin": motion.path.begin, "end": until, "tick_hz": board.tick_hz}
     assert not judge.beyond_limits(pulses, board.robot, **limits)
+
+
+def assert_all_obeyed(board: HostedBoard, pulses: PulseTrain, motions: Sequence[Motion]) -> None:
+    """A whole story without homing in it, up to now: each motion was obeyed, between them nothing
+    moved, and the board has counted each step.
+    """
+    rest = board.wire.telemetry.counts
+    following = [motion.path for motion in motions[1:]]
+    ends = [*((path.begin, path.counts) for path in following), (board.wire.now, rest)]
+    for motion, (end, counts) in zip(motions, ends, strict=True):
+        assert_obeyed(board, pulses, motion)
+        stood = board.rested(motion.epoch) if motion.stopped else motion.until
+        for joint, start in enumerate(motion.path.counts):
+            steps = pulses.joints[joint].between(motion.path.begin, end)
+            assert start + steps.directions.sum() == counts[joint]
+            assert not (steps.ticks > stood).any(), "a step that nobody has asked for"
+
+
+def assert_lost_edges_are_noticed(pulses: PulseTrain, motion: Motion, random: Random) -> int:
+    """One pulse of each joint is taken away; of how many joints there was one."""
+    begin, end = motion.path.begin, motion.until
+    tried = 0
+    for joint, steps in enumerate(pulses.joints[: len(motion.path.counts)]):
+        during = np.nonzero((steps.ticks > begin) & (steps.ticks < end))[0]
+        if len(during):
+            lost = list(pulses.joints)
+            lost[joint] = steps.without(int(random.choice(during)))
+            error = judge.position_error(PulseTrain(tuple(lost), ()), motion.path, until=end)
+            assert error[joint] >= 1.0
+            tried += 1
+    return tried
 
 
 def assert_still(pulses: PulseTrain, *, since: int) -> None:

@@ -16,6 +16,7 @@ WINDOW = 0.020  # s of the fit that gives velocity and acceleration
 NEAR, FAR = 2, 7  # microsteps from the path, between which a deceleration is fitted
 LEAST = 5  # steps in a window; fewer say little of the acceleration
 AFTER = 200  # ticks behind the end of a path, in which it is to stand there
+AT_ONCE = 1 << 20  # ticks
 STRIDE = 0.002  # s from the start of a window to that of the next, at least
 FIT = 1.03  # what the fit may find above a limit: the steps are a tick and half a microstep coarse
 
@@ -27,13 +28,13 @@ def position_error(
     start of the path until the tick `until`, or a while after its end.
     """
     until = path.end + AFTER if until is None else until
-    at = np.arange(path.begin, until, dtype=np.int64)
-    wanted = path.positions(at)
-    errors: list[float] = []
-    for joint, count in enumerate(path.counts):
-        steps = pulses.joints[joint].between(path.begin, until)
-        errors.append(float(np.abs(count + steps.counts(at) - wanted[:, joint]).max()))
-    return errors
+    steps = [joint.between(path.begin, until) for joint in pulses.joints]
+    worst = np.zeros(len(path.counts))
+    for begin in range(path.begin, until, AT_ONCE):
+        at = np.arange(begin, min(begin + AT_ONCE, until), dtype=np.int64)
+        counted = [count + steps[joint].counts(at) for joint, count in enumerate(path.counts)]
+        worst = np.maximum(worst, np.abs(np.transpose(counted) - path.positions(at)).max(axis=0))
+    return worst.tolist()
 
 
 @dataclass(frozen=True)
@@ -70,16 +71,28 @@ def beyond_limits(
     pulses: PulseTrain, robot: Robot, *, begin: int, end: int, tick_hz: int
 ) -> list[str]:
     """What of the steps in these ticks is faster, or quicker to change, than its joint may be."""
-    found: list[str] = []
+    shares = limit_shares(pulses, robot, begin=begin, end=end, tick_hz=tick_hz)
+    return [
+        f"joint {joint}: {what} {share:.3f} of its limit"
+        for joint, share_of in enumerate(shares)
+        for what, share in (("speed", share_of.speed), ("acceleration", share_of.acceleration))
+        if share > FIT
+    ]
+
+
+def limit_shares(
+    pulses: PulseTrain, robot: Robot, *, begin: int, end: int, tick_hz: int
+) -> list[Peaks]:
+    """The peaks of each joint in these ticks, as shares of its limits."""
+    shares: list[Peaks] = []
     for joint, per_rad in enumerate(robot.drive.microsteps_per_rad):
         seen = peaks(pulses.joints[joint].between(begin, end), tick_hz=tick_hz)
-        for what, peak, limit in (
-            ("speed", seen.speed, robot.limits.joint.velocity[joint] * per_rad),
-            ("acceleration", seen.acceleration, robot.limits.joint.acceleration[joint] * per_rad),
-        ):
-            if peak > limit * FIT:
-                found.append(f"joint {joint}: {what} {peak / limit:.3f} of its limit")
-    return found
+        limits = robot.limits.joint
+        speed, acceleration = limits.velocity[joint], limits.acceleration[joint]
+        shares.append(
+            Peaks(seen.speed / per_rad / speed, seen.acceleration / per_rad / acceleration)
+        )
+    return shares
 
 
 def brake_began(pulses: PulseTrain, path: CommandedPath, joint: int) -> float:

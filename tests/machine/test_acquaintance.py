@@ -8,13 +8,15 @@ from typing import Any, cast
 import pytest
 
 from deltaviz.link.configuration import configuration_hash, configure_from
+from deltaviz.link.messages import StopCause
 from deltaviz.machine.acquaintance import Acquaintance
 from deltaviz.machine.known_robots import KnownRobots
 from deltaviz.robots import load_robot
 
 
-def session(*, boot: int, homed: bool) -> Any:
-    return cast("Any", SimpleNamespace(board=SimpleNamespace(boot=boot), homed=homed))
+def session(*, boot: int, homed: bool, last_stop: StopCause = StopCause.HOST_STOP) -> Any:
+    board = SimpleNamespace(boot=boot, last_stop=last_stop)
+    return cast("Any", SimpleNamespace(board=board, homed=homed))
 
 
 @pytest.mark.parametrize(
@@ -34,6 +36,30 @@ def test_what_is_told(before: tuple[int, bool], now: tuple[int, bool], says: str
     acquaintance.note("ttyusb0", session(boot=before[0], homed=before[1]))
     told = acquaintance.greet("ttyusb0", session(boot=now[0], homed=now[1]))
     assert (told is None) if says is None else says in str(told)
+
+
+@pytest.mark.parametrize(
+    ("cause", "says"),
+    [
+        (StopCause.UNDERRUN, "ran out of motion"),
+        (StopCause.LEASE, "did not hear from a computer for 150 ms"),
+        (StopCause.LIMIT_SWITCH, "end switch"),
+        (StopCause.HOMED, None),
+        (StopCause.BOOT, None),
+        (StopCause.NONE, None),
+    ],
+)
+def test_a_board_that_braked_while_nobody_was_there_says_why(
+    cause: StopCause, says: str | None
+) -> None:
+    met = session(boot=1, homed=True, last_stop=cause)
+    first = Acquaintance().greet("ttyusb0", met)
+    assert (first is None) if says is None else says in str(first)
+    again = Acquaintance()
+    again.note("ttyusb0", session(boot=1, homed=True))
+    told = str(again.greet("ttyusb0", met))
+    assert "kept its position" in told
+    assert says is None or says in told
 
 
 def test_a_board_on_another_link_is_not_met_again() -> None:

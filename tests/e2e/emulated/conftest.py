@@ -106,9 +106,16 @@ STEPS = {
 }
 
 
+def is_waiting(state: dict[str, Any]) -> bool:
+    """For somebody to do something."""
+    if state["mode"] == "offline":
+        return state["link"]["phase"] == "closed"
+    return state["mode"] in {*STEPS, "idle"}
+
+
 def make_ready(served: Served) -> None:
     for _ in range(6):
-        mode = served.wait(lambda s: s["mode"] in {*STEPS, "idle"}, "rest")["mode"]
+        mode = served.wait(is_waiting, "rest")["mode"]
         if mode == "idle":
             return
         call, body = STEPS[mode]

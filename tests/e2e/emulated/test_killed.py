@@ -41,13 +41,12 @@ def kill(host: Any, board: HostedBoard) -> tuple[PulseTrain, int]:
     return pulses, wire.seen
 
 
-def why(host: Any, board: HostedBoard) -> StopCause:
-    """What the board answers to the next hello."""
+def why(host: Any, board: HostedBoard) -> tuple[StopCause, str]:
+    """What the board answers to the next hello, and what the next host makes of it."""
     board.wire.flow(Flow.WAITS)
     after = len(board.wire.passed)
-    served = host.running()
-    served.wait(lambda s: s["link"]["connected"], "the next host")
-    return board.wire.all(Greeting, after=after)[0].last_stop
+    state = host.running().wait(lambda s: s["link"]["connected"], "the next host")
+    return board.wire.all(Greeting, after=after)[0].last_stop, state["link"]["note"]
 
 
 def test_in_a_move(served: Any, host: Any, board: HostedBoard, move: Callable[..., None]) -> None:
@@ -56,7 +55,9 @@ def test_in_a_move(served: Any, host: Any, board: HostedBoard, move: Callable[..
     motion = board.motions()[-1]
     assert_obeyed(board, pulses, motion)
     assert_slows_in_time(pulses, motion, seen=seen)
-    assert why(host, board) is StopCause.UNDERRUN
+    cause, told = why(host, board)
+    assert cause is StopCause.UNDERRUN
+    assert "ran out of motion" in told
 
 
 def test_while_homing(served: Any, host: Any, board: HostedBoard) -> None:
@@ -67,7 +68,9 @@ def test_while_homing(served: Any, host: Any, board: HostedBoard) -> None:
     ms = board.wire.ticks_per_ms
     began = judge.brake_began(pulses, evenly(pulses, seen - 30 * ms, seen + 60 * ms), 0)
     assert seen + (LEASE - 10) * ms <= began <= seen + (LEASE + SURE) * ms
-    assert why(host, board) is StopCause.LEASE
+    cause, told = why(host, board)
+    assert cause is StopCause.LEASE
+    assert "did not hear from a computer for 150 ms" in told
 
 
 def evenly(pulses: PulseTrain, begin: int, end: int) -> CommandedPath:
