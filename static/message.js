@@ -2,7 +2,7 @@
  * The one thing to tell the operator now: what went wrong, what holds the robot back and what
  * leads out, or the next step.
  *
- * @import {Held, Mode} from "./types.js"
+ * @import {Held, Mode, RobotState} from "./types.js"
  * @import {Notice, Tone} from "./notices.js"
  * @import {Picture} from "./obstacle.js"
  *
@@ -49,7 +49,7 @@ export function chooseMessage({ state, connected, stale, notice }) {
   const step = STEPS[state.mode] ?? null;
   if (notice?.tone === "bad") return tell("bad", notice.text, step);
   if (state.fault !== null) return tell("bad", `Fault: ${state.fault}`, step);
-  if (state.mode === "estop") return tell("bad", state.next_step ?? NEXT.estop, step);
+  if (state.mode === "estop") return tell("bad", estopSentence(state), step);
   if (notice !== null) return tell(notice.tone, notice.text, step);
   if (state.link.problem !== null) return tell("bad", state.link.problem, step);
   if (state.held_by.length > 0) return tell("warn", heldSentence(state.held_by));
@@ -61,6 +61,15 @@ export function chooseMessage({ state, connected, stale, notice }) {
     return tell("quiet", `Stopped: ${withPeriod(state.stop_reason)} ${next}`, step);
   }
   return tell("quiet", next, step);
+}
+
+/**
+ * Why, too: it may have been a button elsewhere, or the board may refuse to be reset.
+ * @param {RobotState} state
+ */
+function estopSentence({ stop_reason, next_step }) {
+  const next = next_step ?? NEXT.estop;
+  return stop_reason === null ? next : `${withPeriod(stop_reason)} ${next}`;
 }
 
 /** @param {Held[]} held */

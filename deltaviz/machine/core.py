@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from deltaviz.link.configuration import configuration_hash, configure_from
-from deltaviz.link.messages import BoardMessage, HostMessage
+from deltaviz.link.messages import BoardMessage, Fault, HostMessage, StopCause
 from deltaviz.link.report import LinkReport
 from deltaviz.link.session import Session
 from deltaviz.machine import sentences
@@ -233,7 +233,16 @@ class Core:
             if self.mode is not Mode.STOPPING:
                 self._board_braked(session, now)
         elif after(self.mode, event) is not self.mode and self._enter(event):
+            if event is Event.IS_ESTOPPED:
+                self._stop_reason = self._estopped_by(session)
             self._drop_motion(now)
+
+    def _estopped_by(self, session: Session) -> str:
+        """Of an e-stop that nobody has asked this program for."""
+        telemetry = session.telemetry
+        if telemetry is not None and telemetry.fault is Fault.ESTOP_INPUT:
+            return sentences.ESTOP_BY_INPUT
+        return sentences.STOPPED_BY[StopCause.ESTOP]
 
     def _board_rests(self, event: Event, session: Session, now: float) -> None:
         if self._drive is not None and session.flight is None and self.mode in MOVING:

@@ -38,6 +38,9 @@ NEVER_BEGAN = (
     "The motion did not reach the board, so it was given up. Check its cable; if it happens again, "
     "connect anew."
 )
+ESTOP_BY_INPUT: Final = (
+    "The hardware emergency stop was pressed: the drivers are off, the robot must be homed again."
+)
 
 # Of a board that stopped while nobody was there to hear why: "it braked by itself: ..."
 BRAKED_ALONE: Final[Mapping[StopCause, str]] = {

@@ -106,3 +106,13 @@ def test_a_board_that_was_met_again_is_told_of_with_the_next_step(page: Page, ma
     expect(page.get_by_role("status")).to_have_text(
         "Connected again: the board was restarted, so home it. Home the robot."
     )
+
+
+def test_an_e_stop_is_told_with_its_cause(page: Page, machine: Any) -> None:
+    next_step = "Make sure that all is safe, then reset."
+    machine.set(mode="estop", homed=False, next_step=next_step)
+    expect(page.get_by_role("status")).to_have_text(next_step)
+    machine.set(stop_reason="The board refused 'reset': the emergency stop is still pressed.")
+    expect(page.get_by_role("status")).to_have_text(
+        f"The board refused 'reset': the emergency stop is still pressed. {next_step}"
+    )

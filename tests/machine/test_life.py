@@ -127,6 +127,17 @@ def test_an_estop_from_anyone_works_in_every_mode(bench: Any, mode: Mode) -> Non
     assert bench.mode is Mode.DISABLED
 
 
+def test_the_button_of_the_board_is_named_and_so_is_that_it_is_still_pressed(bench: Any) -> None:
+    bench.board.press_estop(True)
+    bench.run(0.02)
+    assert bench.mode is Mode.ESTOP
+    assert "hardware emergency stop was pressed" in bench.snapshot.stop_reason
+    assert bench.do(i.Reset(ME)) == ACCEPTED
+    bench.run(0.05)
+    assert bench.mode is Mode.ESTOP
+    assert "still pressed" in bench.snapshot.stop_reason
+
+
 def test_the_simulated_board_starts_idle_at_the_ready_pose(bench: Any) -> None:
     state = bench.snapshot
     assert state.mode is Mode.IDLE

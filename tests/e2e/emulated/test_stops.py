@@ -54,7 +54,8 @@ def test_an_e_stop_by_the_button(
     board.bench.estop(pressed=True)
     wire.until_state(BoardState.ESTOP)
     cut_off(board, pressed, after)
-    served.wait(lambda s: s["mode"] == "estop", "what the host makes of it")
+    state = served.wait(lambda s: s["mode"] == "estop", "what the host makes of it")
+    assert "hardware emergency stop was pressed" in state["stop_reason"]
     assert served.post("/api/reset") == 200
     state = served.wait(lambda s: "still pressed" in (s["stop_reason"] or ""), "the refusal")
     assert state["mode"] == "estop"
