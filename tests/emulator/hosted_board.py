@@ -133,11 +133,13 @@ def assert_all_obeyed(board: HostedBoard, pulses: PulseTrain, motions: Sequence[
 
 
 def assert_lost_edges_are_noticed(pulses: PulseTrain, motion: Motion, random: Random) -> int:
-    """One pulse of each joint is taken away; of how many joints there was one."""
+    """One pulse of each joint is taken away, with one behind it to tell; of how many joints there
+    was one.
+    """
     begin, end = motion.path.begin, motion.until
     tried = 0
     for joint, steps in enumerate(pulses.joints[: len(motion.path.counts)]):
-        during = np.nonzero((steps.ticks > begin) & (steps.ticks < end))[0]
+        during = np.nonzero((steps.ticks > begin) & (steps.ticks < end))[0][:-1]
         if len(during):
             lost = list(pulses.joints)
             lost[joint] = steps.without(int(random.choice(during)))
