@@ -106,7 +106,7 @@ def test_a_port_that_is_not_there_is_told_in_the_terminal_and_another_can_be_cho
     served = serve("--link", str(device))
     assert served.process.stdout.readline().startswith(f"deltaviz: There is no {device}.")
     assert served.state()["link"]["id"] == "ttynone"
-    assert [link["id"] for link in served.get("/api/ports")][:2] == ["sim", "ttynone"]
+    assert [link["id"] for link in served.get("/api/ports")][:3] == ["sim", "emulate", "ttynone"]
     assert served.post("/api/connect", {"link": "nonsense"}) == 422
     assert served.post("/api/connect", {"link": "sim"}) == 200
     served.wait(lambda s: s["mode"] == "idle", "the simulated board")

@@ -23,7 +23,7 @@ from tests.emulator.hosted_board import HostedBoard
 QUICK = {"fast_deg_s": 90, "slow_deg_s": 5, "backoff_deg": 1}  # homes in two seconds, not ten
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def robot_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The stm32 preset, quick to home, and with one motor reversed."""
     text = preset_text("stm32")
@@ -36,12 +36,12 @@ def robot_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return file
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def robot(robot_file: Path) -> Robot:
     return load_robot(str(robot_file))
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def board(robot: Robot) -> Iterator[HostedBoard]:
     board = HostedBoard(robot)
     yield board
@@ -83,7 +83,7 @@ class Host:
             self.served.end()
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def host(robot_file: Path, board: HostedBoard) -> Iterator[Host]:
     host = Host(robot_file, board.wire.url)
     yield host
