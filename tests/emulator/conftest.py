@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from math import radians
 from random import Random
 from typing import Any
 
@@ -16,6 +15,7 @@ from deltaviz.motion.goal import Goal, Rest, ToPoint
 from deltaviz.motion.knot import Knot
 from deltaviz.robots import Robot
 from tests.emulator.emulated_board import EmulatedBoard
+from tests.quick_homing import with_quick_homing
 
 STEP, RAMP = 0.01, 0.1  # s
 
@@ -25,14 +25,8 @@ def robot() -> Robot:
     """The stm32 preset, which homes in two seconds rather than ten, and has one motor reversed."""
     robot = load_robot("stm32")
     warm_up(robot)
-    quick = replace(
-        robot.homing,
-        fast=(radians(90.0),) * 3,
-        slow=(radians(5.0),) * 3,
-        backoff=(radians(1.0),) * 3,
-    )
     drive = replace(robot.drive, invert=(False, True, False))
-    return replace(robot, homing=quick, drive=drive)
+    return replace(with_quick_homing(robot), drive=drive)
 
 
 @pytest.fixture

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from functools import cache
-from math import radians
 
 from deltaviz.link.messages import BoardState, Configure
 from deltaviz.machine import intent as i
@@ -13,6 +11,7 @@ from deltaviz.machine.drive import warm_up
 from deltaviz.machine.mode import Mode
 from deltaviz.robots import Robot, load_robot
 from tests.faults.wire_bench import LINK, WireBench
+from tests.quick_homing import with_quick_homing
 
 ME = "me"
 ACCEPTED = i.Accepted()
@@ -26,13 +25,7 @@ def quick_robot() -> Robot:
     """The stm32 preset, which homes in two seconds rather than ten."""
     robot = load_robot("stm32")
     warm_up(robot)
-    quick = replace(
-        robot.homing,
-        fast=(radians(90.0),) * 3,
-        slow=(radians(5.0),) * 3,
-        backoff=(radians(1.0),) * 3,
-    )
-    return replace(robot, homing=quick)
+    return with_quick_homing(robot)
 
 
 def idle(bench: WireBench) -> None:

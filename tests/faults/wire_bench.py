@@ -11,18 +11,16 @@ from random import Random
 
 from deltaviz.link.board import SimulatedBoard
 from deltaviz.link.board.port import BoardPort
-from deltaviz.link.messages import Stop
+from deltaviz.link.messages import HostMessage, Stop
 from deltaviz.link.rules import TICK_HZ, since
 from deltaviz.link.stream_transport import StreamTransport
 from deltaviz.link.transport import Transport
 from deltaviz.link.wire.codec import decode_board, encode
 from deltaviz.link.wire.frames import FrameReader, write_frame
-from deltaviz.machine.link_keeper import LinkKeeper
 from deltaviz.robots import Robot
 from tests.faults.executed import Executed, Sample
 from tests.faults.faulty_line import FRAME_END, Fault, FaultyLine
-from tests.machine.cable_bench import at_once
-from tests.machine.conftest import Bench
+from tests.machine.kept_bench import KeptBench
 
 LINK = "ttyusb0"
 MS = TICK_HZ // 1000
@@ -30,7 +28,7 @@ STOP = write_frame(encode(Stop())[0], 0, b"").removesuffix(FRAME_END)
 BROKE = "The link broke: {}. A moving board brakes by itself. Check its cable, then connect."
 
 
-class WireBench(Bench):
+class WireBench(KeptBench):
     """`to_board` and `to_host` are the wire. `cut` lets nothing pass, unnoticed by either end;
     `unplug` is a cut that the host's end notices.
     """
@@ -48,13 +46,8 @@ class WireBench(Bench):
         self._seed = seed
         self.told: list[bytes] = []  # all frames that the host has sent
         self.heard_bytes: list[bytes] = []  # and the board
-        self._keeper: LinkKeeper | None = None
         self._port: BoardPort | None = None
         super().__init__(robot, homed=homed, link=LINK)
-
-    @property
-    def transport(self) -> Transport | None:
-        return None if self._keeper is None else self._keeper.transport
 
     @property
     def injected(self) -> int:
@@ -89,10 +82,6 @@ class WireBench(Bench):
         for _ in range(round(seconds / 0.002)):
             self.now += 0.002
             self._advance_board()
-
-    def close(self) -> None:
-        if self._keeper is not None:
-            self._keeper.close()
 
     # The board's end.
 
@@ -161,23 +150,11 @@ class WireBench(Bench):
         self.to_host.clear()
         return StreamTransport(_HostEnd(self), broke=BROKE.format, clock=lambda: self.now)
 
-    def _turn(self) -> None:
-        keeper = self._keeper
-        if keeper is None:
-            keeper = LinkKeeper(self.controller, open_link=self._open, opener=at_once)
-            self._keeper = keeper
-        keeper.receive(self.now)
-        messages = self.controller.tick(self.now)
-        for _ in range(100):
-            if not self.controller.hungry(self.now):
-                break
-            messages += self.controller.tick(self.now)
-        self.sent += messages
+    def _send(self, messages: list[HostMessage]) -> None:
         for message in messages:
             if self.executed:
                 self.executed[-1].command(message)
-        keeper.send(messages)
-        keeper.follow()
+        super()._send(messages)
 
 
 class _HostEnd:

@@ -5,24 +5,19 @@ The bytes go through the operating system, the serial link and the machine's own
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from concurrent.futures import Future
-
 from deltaviz.link.board import SimulatedBoard
 from deltaviz.link.board.port import BoardPort
 from deltaviz.link.rules import TICK_HZ
 from deltaviz.link.serial_link import open_serial
 from deltaviz.link.transport import Transport
-from deltaviz.machine.link_keeper import LinkKeeper
-from deltaviz.machine.opener import open_now
 from deltaviz.robots import Robot
 from tests.link.cable import Cable, Counted, SocketCable, wait_for_bytes
-from tests.machine.conftest import Bench
+from tests.machine.kept_bench import KeptBench
 
 LINK = "ttyusb0"
 
 
-class CableBench(Bench):
+class CableBench(KeptBench):
     """`unplug` pulls the plug; `plug_in` gives the same board, or a new one, a new cable."""
 
     def __init__(
@@ -31,15 +26,10 @@ class CableBench(Bench):
         self._new_cable = cable
         self.cable = cable()
         self.port: BoardPort | None = None
-        self._keeper: LinkKeeper | None = None
         self._host: Counted | None = None
         self._told = 0  # bytes, since the host opened the port
         self._heard = 0
         super().__init__(robot, homed=homed, link=LINK)
-
-    @property
-    def transport(self) -> Transport | None:
-        return None if self._keeper is None else self._keeper.transport
 
     def plug_in(self, board: SimulatedBoard | None = None, *, homed: bool = False) -> None:
         self.cable.unplug()
@@ -51,8 +41,7 @@ class CableBench(Bench):
         self.cable.unplug()
 
     def close(self) -> None:
-        if self._keeper is not None:
-            self._keeper.close()
+        super().close()
         self.cable.unplug()
 
     def _set_board(self, board: SimulatedBoard) -> None:
@@ -97,24 +86,3 @@ class CableBench(Bench):
         self.cable.say(data)
         self._told += len(data)
         wait_for_bytes(self.transport.fileno(), self._told - self._host.read_)
-
-    def _turn(self) -> None:
-        keeper = self._keeper
-        if keeper is None:
-            keeper = LinkKeeper(self.controller, open_link=self._open, opener=at_once)
-            self._keeper = keeper
-        keeper.receive(self.now)
-        messages = self.controller.tick(self.now)
-        for _ in range(100):
-            if not self.controller.hungry(self.now):
-                break
-            messages += self.controller.tick(self.now)
-        self.sent += messages
-        keeper.send(messages)
-        keeper.follow()
-
-
-def at_once(open_: Callable[[], Transport]) -> Future[Transport]:
-    future: Future[Transport] = Future()
-    open_now(open_, future)
-    return future

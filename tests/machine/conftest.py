@@ -160,12 +160,17 @@ class Bench:
             heard = self.board.take()
             self.heard += heard
             self.controller.receive(heard, self.now)
-        self._send(self.controller.tick(self.now))
+        self._send(self._messages())
+        self._follow_link()
+
+    def _messages(self) -> list[HostMessage]:
+        """What the controller says in one turn."""
+        messages = self.controller.tick(self.now)
         for _ in range(100):
             if not self.controller.hungry(self.now):
                 break
-            self._send(self.controller.tick(self.now))
-        self._follow_link()
+            messages += self.controller.tick(self.now)
+        return messages
 
     def _send(self, messages: list[HostMessage]) -> None:
         self.sent += messages

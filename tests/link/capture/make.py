@@ -20,8 +20,8 @@ from deltaviz.machine.controller import Controller
 from deltaviz.machine.link_keeper import LinkKeeper
 from deltaviz.machine.mode import Mode
 from deltaviz.robots import Robot, load_robot
-from tests.machine.cable_bench import at_once
 from tests.machine.conftest import steady_follower
+from tests.machine.kept_bench import at_once
 
 KEPT = Path(__file__).parents[2] / "data" / "session.capture"
 ME = "me"
