@@ -14,14 +14,10 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
+from deltaviz.terminal.status import BAD_USAGE, FAILED, OK, UsageError
+
 if TYPE_CHECKING:  # the command line starts before the layers it needs are known
     from deltaviz.robots import Reach, Robot
-
-OK, FAILED, BAD_USAGE = 0, 1, 2
-
-
-class UsageError(Exception):
-    """A wrong argument; the text says which, and what would be right."""
 
 
 class _Parser(argparse.ArgumentParser):
@@ -215,18 +211,18 @@ def _print_values(values: list[float], *, key: str, unit: str, digits: int, as_j
 
 
 def _add_workspace(parser: argparse.ArgumentParser) -> None:
-    from deltaviz import workspace_command
+    from deltaviz.terminal import workspace
 
     _add_robot(parser)
     _add_json(parser)
-    workspace_command.add_arguments(parser)
+    workspace.add_arguments(parser)
     parser.set_defaults(run=_workspace)
 
 
 def _workspace(options: argparse.Namespace) -> int:
-    from deltaviz import workspace_command
+    from deltaviz.terminal import workspace
 
-    return workspace_command.run(_load(options.robot), options)
+    return workspace.run(_load(options.robot), options)
 
 
 def _add_robots(parser: argparse.ArgumentParser) -> None:
@@ -310,59 +306,10 @@ def _emulate(options: argparse.Namespace) -> int:
 
 
 def _add_monitor(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("url", nargs="?", metavar="URL", help="a port to listen on")
-    parser.add_argument("--capture", type=Path, metavar="FILE", help="what serve --capture wrote")
-    parser.add_argument("--follow", action="store_true", help="go on while the capture grows")
-    parser.add_argument("--only", type=_names, default=(), metavar="NAMES", help="Arm,Segment,...")
-    parser.add_argument("--hide", type=_names, default=(), metavar="NAMES", help="Telemetry,Keep")
-    parser.add_argument("--from", dest="sender", choices=("host", "board"), help="one side's words")
-    parser.add_argument(
-        "--replay",
-        choices=("session", "board"),
-        help="run a capture again: the host's session with the board's words, or the simulated "
-        "board with the host's; status 1 if it does not come out the same",
-    )
-    parser.add_argument("--json", action="store_true", help="one JSON object a line")
-    parser.set_defaults(run=_monitor)
+    from deltaviz.terminal import monitor_options
 
-
-def _names(text: str) -> tuple[str, ...]:
-    from deltaviz.terminal.monitor import NAMES
-
-    names = tuple(name.strip() for name in text.split(","))
-    for name in names:
-        if name not in NAMES:
-            known = ", ".join(NAMES)
-            raise argparse.ArgumentTypeError(f"there is no message {name!r}; there is: {known}")
-    return names
-
-
-def _monitor(options: argparse.Namespace) -> int:
-    from deltaviz.link.capture.reader import CaptureError
-    from deltaviz.link.capture.spoken import ReplayError
-    from deltaviz.link.traffic import Sender
-    from deltaviz.link.transport import LinkError
-    from deltaviz.terminal import monitor
-
-    if (options.url is None) == (options.capture is None):
-        raise UsageError("monitor takes either a port's URL or --capture FILE")
-    if options.capture is None and (options.follow or options.replay):
-        raise UsageError("--follow and --replay go with --capture FILE")
-    try:
-        if options.capture is not None and options.replay is not None:
-            return monitor.replay(options.capture, options.replay, as_json=options.json)
-        sender = None if options.sender is None else Sender(options.sender)
-        filter_ = monitor.Filter(options.only, options.hide, sender)
-        return monitor.run(
-            url=options.url,
-            capture=options.capture,
-            follow=options.follow,
-            filter_=filter_,
-            as_json=options.json,
-        )
-    except (CaptureError, LinkError, ReplayError) as error:
-        print(f"deltaviz: {error}", file=sys.stderr)
-        return FAILED
+    monitor_options.add_arguments(parser)
+    parser.set_defaults(run=monitor_options.run)
 
 
 def _add_verify(parser: argparse.ArgumentParser) -> None:

@@ -8,12 +8,11 @@ import sys
 from typing import TYPE_CHECKING
 
 from deltaviz.terminal.numbers import not_negative, positive
+from deltaviz.terminal.status import FAILED, OK
 
 if TYPE_CHECKING:
     from deltaviz.robots import Robot
     from deltaviz.robots.comparison import Comparison, Row
-
-OK, FAILED = 0, 1
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

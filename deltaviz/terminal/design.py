@@ -13,13 +13,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from deltaviz.terminal.design_options import WrongWish, ranges, wish
+from deltaviz.terminal.status import BAD_USAGE, FAILED, OK
 
 if TYPE_CHECKING:
     from deltaviz.robots import Robot
     from deltaviz.robots.design import Designed, Lengths, Preference, Ranges, Wish
     from deltaviz.robots.design.search import Mapper
-
-OK, FAILED, BAD_USAGE = 0, 1, 2
 
 
 def run(template: Robot, template_text: str, options: argparse.Namespace) -> int:

@@ -10,13 +10,13 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from deltaviz.terminal.numbers import finite, not_negative, positive
+from deltaviz.terminal.status import BAD_USAGE, FAILED, OK
 
 if TYPE_CHECKING:  # the command line starts before the layers it needs are known
     from deltaviz.robots import Robot
     from deltaviz.robots.workspace import Belt, Inscribed, Limit, Workspace
     from deltaviz.robots.workspace.report import Report
 
-OK, FAILED, BAD_USAGE = 0, 1, 2
 LIMITS = ("reach", "joints", "ball-joints", "singularities", "collisions", "zone")
 MACHINE = LIMITS[:-1]
 CSV_SPACING = 10.0  # mm
