@@ -198,9 +198,9 @@ class FiveBar:
 
     def kernel(self, bounds: Bounds) -> Kernel:
         """Compiled functions for the tool tip; numba is imported here, and not before."""
-        from deltaviz.mechanism.five_bar_kernel import FiveBarKernel
+        from deltaviz.mechanism.five_bar_kernel import five_bar_kernel
 
-        return FiveBarKernel(self, bounds)
+        return five_bar_kernel(self, bounds)
 
     @property
     def joint_scale(self) -> tuple[float, ...]:

@@ -10,39 +10,29 @@ from deltaviz.mechanism import arm as arm_module
 from deltaviz.mechanism import five_bar, stiffness
 from deltaviz.mechanism import five_bar_compiled as compiled
 from deltaviz.mechanism.arrays import Array
+from deltaviz.mechanism.bound_kernel import BoundKernel, CompiledFunctions
 from deltaviz.mechanism.bounds import ROUNDING, Bounds
 from deltaviz.mechanism.five_bar import FiveBar
 
+FUNCTIONS = CompiledFunctions(
+    inverse=compiled.inverse,
+    forward=compiled.forward,
+    margins=compiled.margins,
+    joint_velocity=compiled.joint_velocity,
+    tip_velocity=compiled.tip_velocity,
+)
 
-class FiveBarKernel:
-    """See `Kernel`. Of the bounds, a radius and a box in y bind nothing in a plane."""
 
-    def __init__(self, mechanism: FiveBar, bounds: Bounds) -> None:
-        self._g = _geometry(mechanism, bounds)
-        self._limits = _limits(mechanism, bounds)
-        boxes = sum(2 for box in (bounds.z, bounds.x) if box is not None)
-        self._columns = compiled.OWN_COLUMNS + boxes
-
-    def inverse(self, xyz: Array) -> Array:
-        return compiled.inverse(xyz, self._g)
-
-    def forward(self, theta: Array) -> Array:
-        return compiled.forward(theta, self._g)
-
-    def margins(self, xyz: Array, theta: Array) -> Array:
-        return compiled.margins(xyz, theta, self._g, self._limits, self._columns)
-
-    def joint_velocity(self, xyz: Array, theta: Array, velocity: Array) -> Array:
-        return compiled.joint_velocity(xyz, theta, velocity, self._g)
-
-    def tip_velocity(self, xyz: Array, theta: Array, velocity: Array) -> Array:
-        return compiled.tip_velocity(xyz, theta, velocity, self._g)
-
-    def warm_up(self) -> None:
-        theta = np.zeros((1, 2))
-        xyz = self.forward(theta)
-        self.margins(xyz, self.inverse(xyz))
-        self.tip_velocity(xyz, theta, self.joint_velocity(xyz, theta, theta))
+def five_bar_kernel(mechanism: FiveBar, bounds: Bounds) -> BoundKernel:
+    """Of the bounds, a radius and a box in y bind nothing in a plane."""
+    boxes = sum(2 for box in (bounds.z, bounds.x) if box is not None)
+    return BoundKernel(
+        FUNCTIONS,
+        geometry=_geometry(mechanism, bounds),
+        limits=_limits(mechanism, bounds),
+        columns=compiled.OWN_COLUMNS + boxes,
+        joints=2,
+    )
 
 
 def _geometry(mechanism: FiveBar, bounds: Bounds) -> Array:

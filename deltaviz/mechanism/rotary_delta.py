@@ -233,9 +233,9 @@ class RotaryDelta:
 
     def kernel(self, bounds: Bounds) -> Kernel:
         """Compiled functions for the tool tip; numba is imported here, and not before."""
-        from deltaviz.mechanism.rotary_delta_kernel import RotaryDeltaKernel
+        from deltaviz.mechanism.rotary_delta_kernel import rotary_delta_kernel
 
-        return RotaryDeltaKernel(self, bounds)
+        return rotary_delta_kernel(self, bounds)
 
     @property
     def joint_scale(self) -> tuple[float, ...]:

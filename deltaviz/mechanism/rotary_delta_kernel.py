@@ -10,40 +10,29 @@ from deltaviz.mechanism import rotary_delta_batch_compiled as batch
 from deltaviz.mechanism import rotary_delta_compiled as compiled
 from deltaviz.mechanism import stiffness
 from deltaviz.mechanism.arrays import Array
+from deltaviz.mechanism.bound_kernel import BoundKernel, CompiledFunctions
 from deltaviz.mechanism.bounds import ROUNDING, Bounds
 from deltaviz.mechanism.rotary_delta import RotaryDelta
 from deltaviz.mechanism.rotary_delta_numbers import geometry
 
+FUNCTIONS = CompiledFunctions(
+    inverse=batch.inverse,
+    forward=batch.forward,
+    margins=compiled.margins,
+    joint_velocity=compiled.joint_velocity,
+    tip_velocity=compiled.tip_velocity,
+)
 
-class RotaryDeltaKernel:
-    """See `Kernel`."""
 
-    def __init__(self, mechanism: RotaryDelta, bounds: Bounds) -> None:
-        self._g = geometry(mechanism, bounds.tool_offset)
-        self._limits = _limits(mechanism, bounds)
-        boxes = sum(2 for box in (bounds.z, bounds.x, bounds.y) if box is not None)
-        self._columns = 14 + boxes + (bounds.radius is not None)
-
-    def inverse(self, xyz: Array) -> Array:
-        return batch.inverse(xyz, self._g)
-
-    def forward(self, theta: Array) -> Array:
-        return batch.forward(theta, self._g)
-
-    def margins(self, xyz: Array, theta: Array) -> Array:
-        return compiled.margins(xyz, theta, self._g, self._limits, self._columns)
-
-    def joint_velocity(self, xyz: Array, theta: Array, velocity: Array) -> Array:
-        return compiled.joint_velocity(xyz, theta, velocity, self._g)
-
-    def tip_velocity(self, xyz: Array, theta: Array, velocity: Array) -> Array:
-        return compiled.tip_velocity(xyz, theta, velocity, self._g)
-
-    def warm_up(self) -> None:
-        theta = np.zeros((1, 3))
-        xyz = self.forward(theta)
-        self.margins(xyz, self.inverse(xyz))
-        self.tip_velocity(xyz, theta, self.joint_velocity(xyz, theta, theta))
+def rotary_delta_kernel(mechanism: RotaryDelta, bounds: Bounds) -> BoundKernel:
+    boxes = sum(2 for box in (bounds.z, bounds.x, bounds.y) if box is not None)
+    return BoundKernel(
+        FUNCTIONS,
+        geometry=geometry(mechanism, bounds.tool_offset),
+        limits=_limits(mechanism, bounds),
+        columns=14 + boxes + (bounds.radius is not None),
+        joints=3,
+    )
 
 
 def _limits(mechanism: RotaryDelta, bounds: Bounds) -> Array:
