@@ -26,6 +26,7 @@ from tests.faults.judge import MS, Judge
 from tests.faults.wire_faults import FAULTS
 
 RIDE = 0.8  # s
+SPEED = 0.3  # rad/s
 CHOSEN = [
     Fault(Kind.FLIPPED, Unit.BYTE, 0.01),
     Fault(Kind.LOST, Unit.FRAME, 0.05),
@@ -51,13 +52,23 @@ class BadWire:
         self.wire = FaultyStream(stream, turn=GRANT / 1000, seed=7)
         return self.wire
 
-    def ride(self, fault: Fault | None, *, each: Callable[[], None] = lambda: None) -> None:
+    def ride(
+        self,
+        fault: Fault | None,
+        *,
+        each: Callable[[], None] = lambda: None,
+        knots: Wander | None = None,
+    ) -> None:
         """For RIDE seconds of motion; then the wire is sound until all has been told."""
         board, end = self.board, self.board.now + RIDE
         while board.now < end:
             self._rides += 1
             self.wire.hurt(fault)
-            board.begin(self._wander(board, seconds=end - board.now, seed=self._rides))
+            seconds = end - board.now
+            if knots is not None:
+                board.begin(knots(board, seconds=seconds))
+            else:
+                board.begin(self._wander(board, seconds=seconds, seed=self._rides))
             board.until(lambda: self._has_ended(each), "an end")
             self.wire.hurt(None)
             self.wire.cut = False
@@ -143,6 +154,18 @@ def cut_in_motion(bad_wire: BadWire) -> Callable[[], None]:
     return each
 
 
+def towards_the_middle(steady: Wander) -> Wander:
+    """Up or down without a rest on the way, so that a cut always finds the board in motion."""
+
+    def knots(board: EmulatedBoard, *, seconds: float) -> list:
+        assert board.session.theta is not None
+        height = board.robot.forward(board.session.theta)[2]
+        low = height < sum(board.robot.zone.z) / 2
+        return steady(board, seconds=seconds, speed=-SPEED if low else SPEED, rests=True)
+
+    return knots
+
+
 def assert_a_lost_pulse_is_noticed(executed: Executed) -> None:
     counts = [sample.counts[0] for sample in executed.samples]
     step = max(range(1, len(counts)), key=lambda k: abs(counts[k] - counts[k - 1]))
@@ -163,13 +186,13 @@ def bad_wire(emulated_board: Callable[..., EmulatedBoard], wander: Wander) -> Ba
     return BadWire(emulated_board, wander)
 
 
-def test_a_bad_wire_a_cut_and_floods(bad_wire: BadWire) -> None:
+def test_a_bad_wire_a_cut_and_floods(bad_wire: BadWire, steady: Wander) -> None:
     board, random = bad_wire.board, Random(1)
     for fault in CHOSEN:
         bad_wire.ride(fault)
     assert bad_wire.wire.injected > 20
     stops = len(bad_wire.stops)
-    bad_wire.ride(None, each=cut_in_motion(bad_wire))
+    bad_wire.ride(None, each=cut_in_motion(bad_wire), knots=towards_the_middle(steady))
     assert StopCause.UNDERRUN in bad_wire.stops[stops:]
     old = [write_frame(encode(m)[0], 0, encode(m)[1]) for m in board.sent if isinstance(m, Segment)]
     bad_wire.ride(None, each=lambda: board.send_bytes(random.choice(old)))
