@@ -23,6 +23,7 @@ HANDLE = "/robot/effector/handle"
 
 _LEAST_SHARE = 0.075  # of the picture's smaller side: a radius that makes 44 px on a phone
 _LEAST_PIXELS = 26.0
+_TELL_AGAIN = 12  # times: for a second or so
 _REFINE = 1.06  # a change of size smaller than this is not worth a message
 
 
@@ -74,6 +75,7 @@ class Viewer:
         self._controls = controls
         self._dragging = dragging
         self._may_steer: bool | None = None
+        self._tell_again = 0
         self._handle: viser.IcosphereHandle | None = None
         self._handle_scale = 1.0
         self._toggles = self._add_toggles()
@@ -123,13 +125,20 @@ class Viewer:
         handle.on_drag("left")(self._dragging.on_plane)
         handle.on_drag("left", modifier="shift")(self._dragging.on_vertical)
         self._handle, self._handle_scale = handle, 0.0
+        self._tell_again = _TELL_AGAIN
         self._apply_steering(model)
 
     def set_steering(self, may_steer: bool, model: RobotModel) -> None:
-        """Whether this session may move the robot: others see the panel and cannot use it."""
-        if may_steer != self._may_steer:
-            self._may_steer = may_steer
-            self._apply_steering(model)
+        """Whether this session may move the robot: others see the panel and cannot use it.
+
+        To be called again and again: what is said to one browser may overtake what is said to
+        all, so a new robot's inputs are told of several times.
+        """
+        if may_steer == self._may_steer and self._tell_again == 0:
+            return
+        self._tell_again = max(0, self._tell_again - 1)
+        self._may_steer = may_steer
+        self._apply_steering(model)
 
     def fit_handle(self, effector: np.ndarray) -> None:
         """Keep the handle large enough for a finger, from wherever this browser looks."""
