@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from deltaviz.mechanism import FiveBar, GeometryError, Margin, MarginKind, RotaryDelta
 from deltaviz.mechanism.stiffness import TYPE_2_RESERVE, planar_stiffness, unit
+from tests.mechanism.slopes import assert_jacobian_is_the_slope_of_forward
 
 ROBOTS = {
     "point": FiveBar(base_half=60, platform_half=0, upper_arm=100, forearm=200),
@@ -216,14 +217,7 @@ class TestProperties:
     @settings(deadline=None, max_examples=200)
     def test_jacobian_is_the_slope_of_forward(self, robot, theta):
         working(robot, theta)
-        step = 1e-4
-        for joint in range(2):
-            turn = np.eye(2)[joint] * step
-            poses = robot.forward([theta - 2 * turn, theta - turn, theta + turn, theta + 2 * turn])
-            assume(np.isfinite(poses).all())
-            slope = (poses[0] - 8 * poses[1] + 8 * poses[2] - poses[3]) / (12 * step)
-            column = robot.jacobian(theta)[:, joint]
-            assert np.abs(slope - column).max() < 1e-5 * (1 + np.abs(column).max())
+        assert_jacobian_is_the_slope_of_forward(robot, theta)
 
     @given(robots, st.tuples(*[st.floats(-1.0, 1.0)] * 2))
     @settings(deadline=None, max_examples=200)

@@ -8,6 +8,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from deltaviz.mechanism import GeometryError, RotaryDelta
+from tests.mechanism.slopes import assert_jacobian_is_the_slope_of_forward
 
 ROBOTS = {
     "stm32": RotaryDelta(base_radius=115, effector_radius=75, upper_arm=125, forearm=338),
@@ -106,15 +107,7 @@ def test_forward_puts_the_effector_on_all_three_forearms_and_below(robot, theta)
 @settings(deadline=None, max_examples=200)
 def test_jacobian_is_the_slope_of_forward(robot, theta):
     working(robot, theta)
-    step = 1e-4
-    for joint in range(3):
-        turn = np.zeros(3)
-        turn[joint] = step
-        poses = robot.forward([theta - 2 * turn, theta - turn, theta + turn, theta + 2 * turn])
-        assume(np.isfinite(poses).all())
-        slope = (poses[0] - 8 * poses[1] + 8 * poses[2] - poses[3]) / (12 * step)
-        column = robot.jacobian(theta)[:, joint]
-        assert np.abs(slope - column).max() < 1e-5 * (1 + np.abs(column).max())
+    assert_jacobian_is_the_slope_of_forward(robot, theta)
 
 
 @given(angles)
