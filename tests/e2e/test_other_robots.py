@@ -99,7 +99,11 @@ class TestTurningTool:
         return serve("--robot", str(TOOL_AXIS))
 
     def test_a_held_key_turns_it_and_its_release_stops(
-        self, console: Page, served: Any, hold: Callable[..., None]
+        self,
+        console: Page,
+        served: Any,
+        hold: Callable[..., None],
+        wait_for: Callable[..., Any],
     ) -> None:
         before = served.state()
         hold(console, "r", lambda s: s["theta_deg"][3] > 20)
@@ -108,6 +112,11 @@ class TestTurningTool:
         assert rest["xyz_mm"] == before["xyz_mm"]
         assert rest["theta_deg"][:3] == before["theta_deg"][:3]
         slider = console.frame_locator("#scene").get_by_role("slider", name="Tool °")
+        wait_for(
+            lambda: float(slider.get_attribute("aria-valuenow") or "nan"),
+            lambda shown: abs(shown - rest["theta_deg"][3]) < 0.1,
+            "the slider where the tool is",
+        )
         slider.focus()
         for _ in range(5):
             console.keyboard.press("ArrowLeft")
