@@ -14,6 +14,7 @@ from deltaviz.link import messages as m
 from deltaviz.link import problems
 from deltaviz.link.flight import Flight
 from deltaviz.link.impression import Impression
+from deltaviz.link.listening import Listening
 from deltaviz.link.objections import objection
 from deltaviz.link.rules import since
 from deltaviz.link.session_states import PHASES, Motion, News, Phase
@@ -58,7 +59,7 @@ class Session:
         self._digest = digest
         self._scale = tuple(microsteps_per_rad)
         self._robot_of = robot_of
-        self._opened = now
+        self._listening = Listening(now)
         self._heard = now
         self._epoch = 0
         self._under_way = UnderWay()
@@ -66,7 +67,6 @@ class Session:
         self._pending: dict[str, int] = {}  # what has to be answered: in `_ticks`, until when
         self._settled = True  # telemetry has come since the last answer
         self._hello_next = now + HELLO_REPEAT
-        self._report_due = float("inf")
         self._kept = float("-inf")
         self._out: list[m.HostMessage] = [m.Hello(m.PROTOCOL_VERSION)]
 
@@ -247,22 +247,24 @@ class Session:
         self._out += self._under_way.due(now)
         if self.flight is not None and self.telemetry is not None:
             self._out += self.flight.unseen.repeats(self.telemetry)
-        self._listen(now)
+        self._listening.goes_on(now)
+        self._notice_silence()
 
-    def _listen(self, now: float) -> None:
-        """Notice that nothing comes, or nothing that a board would say."""
-        waited = now - self._opened
+    def _notice_silence(self) -> None:
+        """Nothing comes, or nothing that a board would say."""
+        waited = self._listening.since_opening
+        silent = self._listening.in_vain >= SILENT_AFTER
         if self.phase is Phase.GREETING and waited >= STRANGE_AFTER:
             strange = problems.strange(self.impression)
             if strange is not None:
                 self._fail(News.STRANGE, strange)
             elif waited >= GREETING_WITHIN:
                 self._fail(News.SILENT, problems.no_answer(self.impression))
-        elif self.phase is Phase.CONFIGURING and now - self._heard >= SILENT_AFTER:
+        elif self.phase is Phase.CONFIGURING and silent:
             self._fail(News.UNANSWERED, problems.unanswered("configure"))
-        elif self.phase is Phase.CONFIGURED and now >= self._report_due:
+        elif self.phase is Phase.CONFIGURED and silent:
             self._fail(News.UNANSWERED, problems.not_reporting())
-        elif self.phase is Phase.READY and now - self._heard >= SILENT_AFTER:
+        elif self.phase is Phase.READY and silent:
             self._fail(News.SILENT, problems.silent())
 
     def take(self) -> list[m.HostMessage]:
@@ -291,7 +293,7 @@ class Session:
     def _greeted(self, reply: m.HelloReply, now: float) -> None:
         self.board = reply
         self._epoch = reply.last_epoch
-        self._heard = now
+        self._listening.heard(now)
         if reply.version != m.PROTOCOL_VERSION:
             self._fail(News.UNFIT, problems.other_version(reply.version))
         elif reply.joints not in (0, len(self._scale)):  # 0: not configured yet
@@ -309,7 +311,7 @@ class Session:
         if digest != self._digest:
             self._fail(News.DIFFERS, problems.other_configuration())
         elif self._learn(News.TAKEN):
-            self._report_due = now + SILENT_AFTER
+            self._listening.heard(now)
 
     def _done(self, command: str) -> None:
         self._answered(command)
@@ -321,6 +323,7 @@ class Session:
             self._ticks += max(0, since(telemetry.now, self.telemetry.now))
         self.telemetry = telemetry
         self._heard = now
+        self._listening.heard(now)
         self._settled = True
         if m.TelemetryFlags.CONFIGURED not in telemetry.flags:
             self._fail(News.RESTARTED, problems.restarted())

@@ -1,6 +1,7 @@
 """Every time that the host's end of a link goes by, in one place; the board's are in `rules`.
 
-Seconds by the host's clock, except where it says board time.
+Seconds by the host's clock, except where it says board time. Those after which a session fails
+are seconds of listening.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ STRANGE_AFTER: Final = 2.0  # of bytes that no board sends
 GREETING_WITHIN: Final = 10.0  # a simulated or emulated board is a process that has to start
 ANSWER_WITHIN: Final = 1.0  # board time, for what the board answers at once
 SILENT_AFTER: Final = 1.0
+LISTENS_FOR: Final = 0.1  # at most, in one turn of the control loop, which takes 20 ms or less
 STALE: Final = LEASE_MS / 1000  # telemetry older than this can begin and continue no motion
 STOP_REPEAT: Final = 0.010
 KEEP_PERIOD: Final = 0.025  # well within the board's lease

@@ -11,6 +11,7 @@ from deltaviz.link.session import Session
 DIGEST = 1234
 TICK_HZ = 200_000
 MS = TICK_HZ // 1000
+TURN = 0.02  # s, of the control loop at rest
 SCALE = (500.0, 300.0)
 CONFIGURATION = m.Configure(
     kind=m.RobotKind.JOINTS_ONLY, options=m.Options.NONE, homing_direction=-1,
@@ -51,3 +52,10 @@ def ready_session() -> Session:
     new.receive(telemetry(), 10.0)
     new.take()
     return new
+
+
+def listen(session: Session, *, since: float, until: float) -> None:
+    """What the control loop does while nothing comes."""
+    while since < until:
+        since = min(since + TURN, until)
+        session.tick(since)

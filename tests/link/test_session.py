@@ -17,6 +17,7 @@ from tests.link.sessions import (
     HELLO,
     MS,
     TICK_HZ,
+    listen,
     new_session,
     ready_session,
     telemetry,
@@ -74,7 +75,7 @@ def test_a_board_that_does_not_fit_is_told_apart(answers: list[Any], problem: st
 
 def test_an_unanswered_command_ends_the_session(session: Session) -> None:
     session.enable(10.0, on=True)
-    session.tick(10.99)
+    listen(session, since=10.0, until=10.99)
     assert session.phase is Phase.READY
     session.tick(11.01)
     assert session.phase is Phase.FAILED

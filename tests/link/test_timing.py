@@ -13,6 +13,7 @@ from tests.link.sessions import (
     DIGEST,
     HELLO,
     MS,
+    listen,
     new_session,
     ready_session,
     telemetry,
@@ -23,6 +24,7 @@ TICK = 1e-6  # s
 # Each rule as the protocol's description states it: not the constants that the code uses.
 HELLO_REPEAT, GREETING, SILENCE, ANSWER_MS = 0.5, 10.0, 1.0, 1000
 STOP_REPEAT, STALE, NEVER_ARMED_MS = 0.010, 0.150, 100
+MOST_AT_ONCE = 0.1  # s that a turn of the loop counts as listening
 
 
 def greeting() -> Session:
@@ -112,9 +114,25 @@ def test_what_never_comes_fails_the_session_at_its_time_and_not_before(
     lead: Callable[[], Session], after: float, says: str
 ) -> None:
     session = lead()
-    session.tick(10.0 + after - TICK)
+    listen(session, since=10.0, until=10.0 + after - TICK)
     assert session.phase is not Phase.FAILED
     session.tick(10.0 + after + TICK)
+    assert session.phase is Phase.FAILED
+    assert says in str(session.problem)
+
+
+@pytest.mark.parametrize(("lead", "after", "says"), FAILS)
+def test_a_host_that_was_frozen_first_hears_what_was_said_meanwhile(
+    lead: Callable[[], Session], after: float, says: str
+) -> None:
+    session = lead()
+    listen(session, since=10.0, until=10.0 + after / 2)
+    thawed = 10.0 + 3 * after
+    session.tick(thawed)
+    assert session.phase is not Phase.FAILED
+    listen(session, since=thawed, until=thawed + after / 2 - MOST_AT_ONCE - TICK)
+    assert session.phase is not Phase.FAILED
+    session.tick(thawed + after / 2 - MOST_AT_ONCE + TICK)
     assert session.phase is Phase.FAILED
     assert says in str(session.problem)
 
