@@ -13,7 +13,7 @@ from playwright.sync_api import Browser, Page, sync_playwright
 
 from deltaviz.machine.client import MachineClient
 
-CHROMIUM = str(Path(__file__).parents[1] / "tests" / "chromium")
+CHROMIUM = "/usr/bin/chromium"
 FLAGS = [
     "--no-sandbox",
     "--use-angle=swiftshader",
