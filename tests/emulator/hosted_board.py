@@ -20,6 +20,7 @@ from tests.emulator import judge
 from tests.emulator.motions import Motion, motions
 from tests.emulator.overheard import Stopped
 from tests.emulator.pin_trace import PinTrace
+from tests.emulator.priority import coming_first
 from tests.emulator.pulse_train import PulseTrain, pulse_train
 from tests.emulator.wire import Wire
 
@@ -47,10 +48,11 @@ class HostedBoard:
         return 1000 * self.wire.ticks_per_ms
 
     def _power_up(self):
-        trace = PinTrace()
+        with coming_first():
+            trace = PinTrace()
         link, board = wire_pair()
         pace, paced = Pace.pair()
-        with board, paced:
+        with board, paced, coming_first():
             emulator = Emulator.start(
                 self._configure,
                 image=built(),

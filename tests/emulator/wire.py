@@ -21,6 +21,7 @@ from deltaviz.link.emulator.pace import MOST_MS, Pace
 from deltaviz.link.messages import BoardState
 from deltaviz.link.rules import since
 from tests.emulator.overheard import Ear, Greeting, Keep, Said, Segment, Telemetry
+from tests.emulator.priority import coming_first
 
 PATIENCE = 60.0  # s of ours in which the board's time stands still
 WITHIN = 20.0  # s of the board's time
@@ -177,22 +178,26 @@ class Wire:
     # The thread.
 
     def _run(self) -> None:
-        while not self._ending:
-            ends = [end for end in (self._listener, self._host, self._board) if end is not None]
-            try:
-                ready, _, _ = select.select(ends, [], [], _LOOK)
-            except (OSError, ValueError):  # one was closed meanwhile
-                continue
-            with self._news:
-                for end in ready:
-                    if end is self._listener:
-                        self._let_in()
-                    elif end is self._host:
-                        self._carry_to_board(_read(end))
-                    elif end is self._board:
-                        self._carry_to_host(_read(end))
-                self._grant()
-                self._news.notify_all()
+        with coming_first():
+            while not self._ending:
+                self._turn()
+
+    def _turn(self) -> None:
+        ends = [end for end in (self._listener, self._host, self._board) if end is not None]
+        try:
+            ready, _, _ = select.select(ends, [], [], _LOOK)
+        except (OSError, ValueError):  # one was closed meanwhile
+            return
+        with self._news:
+            for end in ready:
+                if end is self._listener:
+                    self._let_in()
+                elif end is self._host:
+                    self._carry_to_board(_read(end))
+                elif end is self._board:
+                    self._carry_to_host(_read(end))
+            self._grant()
+            self._news.notify_all()
 
     def _let_in(self) -> None:
         host, _ = self._listener.accept()

@@ -12,7 +12,6 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from deltaviz.link.messages import BoardState
-from tests.e2e.conftest import Served
 from tests.emulator import judge
 from tests.emulator.hosted_board import (
     HostedBoard,
@@ -28,35 +27,6 @@ LONG = 120_000  # ms; software rendering is slow
 CLOSE = 0.4  # mm: one microstep of each of the three joints
 TEN_MINUTES = 600  # s of board time
 KEYS = ("ArrowRight", "ArrowLeft", "ArrowUp", "ArrowDown")
-
-
-class Patient(Served):
-    """A machine with more to do than it can starve the emulator, which the host then finds silent,
-    and rightly: the person at the page connects again, and goes on.
-    """
-
-    def __init__(self, served: Served, page: Page) -> None:
-        super().__init__(served.process, served.url)
-        self._page = page
-        self._again = 0
-
-    def state(self) -> dict[str, Any]:
-        state = super().state()
-        if state["mode"] != "offline" or state["link"]["phase"] != "closed":
-            return state
-        self._again += 1
-        assert self._again <= TRIES, state["link"]
-        assert "silent" in state["link"]["problem"]
-        connect = """() => fetch("/api/connect", {
-            method: "POST", headers: {"content-type": "application/json"},
-            body: JSON.stringify({link: "socket"})}).then((r) => r.status)"""
-        assert self._page.evaluate(connect) == 200
-        return self.wait(lambda s: s["link"]["connected"], "the board again")
-
-
-@pytest.fixture
-def served(served: Served, page: Page) -> Served:
-    return Patient(served, page)
 
 
 def away(state: dict[str, Any], xyz: Sequence[float]) -> float:
