@@ -43,7 +43,7 @@ CASES = [
     (long_and_short, "arms reach no point in common"),
     (lambda r: with_(r, min_deg=-179.0, max_deg=-175.0), "joint limits the forearms"),
     (aside, "a ball joint would be beyond its limit"),
-    # The arms are straight at 95°.
+    # All arms almost straight: the forearms are nearly parallel.
     (lambda r: with_(r, min_deg=93.0, max_deg=96.0), "too near a singularity"),
     (flat, "too near a singularity"),
     (fat, "parts of the robot would touch"),
