@@ -18,7 +18,7 @@ BENCHMARKS = {
     "startup": ("Start-up", ["startup", "--rounds", "2"]),
     "kinematics": (
         "Inverse and forward for a million poses, against scalar C",
-        ["kinematics", "--rounds", "3"],
+        ["kinematics", "--rounds", "40"],
     ),
     "workspace": ("The workspace: field, boundary, what fits", ["workspace"]),
     "follower": ("One tick of the follower", ["follower", "--ticks", "200"]),

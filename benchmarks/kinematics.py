@@ -57,7 +57,7 @@ class Tutorial:
 def main() -> None:
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--poses", type=int, default=1_000_000)
-    options.add_argument("--rounds", type=int, default=7)
+    options.add_argument("--rounds", type=int, default=40)
     chosen = options.parse_args()
     robot = load_robot("trossen")
     mechanism, kernel = robot.mechanism, robot.kernel

@@ -148,17 +148,36 @@ def test_few_poses_import_nothing():
 
 
 def test_arctangent():
-    """To two roundings, over all octants and their borders."""
+    """Of half an angle, doubled: to two roundings, over the half plane and the fold's borders."""
+    halves = np.append(np.linspace(-math.pi / 2, math.pi / 2, 20_001), [-math.pi / 6, math.pi / 6])
     for scale in (1e-12, 1.0, 1e12):
-        for a in np.linspace(-math.pi, math.pi, 20_001):
-            y, x = scale * math.sin(a), scale * math.cos(a)
-            rise, run = compiled._folded(y, x)
-            found = compiled._unfolded(rise / run, y, x)
-            assert found == pytest.approx(math.atan2(y, x), rel=4.5e-16, abs=0)
+        for half in halves:
+            rise, run = scale * math.sin(half), scale * math.cos(half)
+            up, along = compiled._folded(rise, run)
+            found = compiled._unfolded(2.0 * (up / along), rise, run)
+            assert found == pytest.approx(2.0 * math.atan2(rise, run), rel=4.5e-16, abs=0)
 
 
-def test_sine_and_cosine():
-    for a in np.linspace(-40.0, 40.0, 40_001):
-        sine, cosine = compiled._sin_cos(a)
-        assert sine == pytest.approx(math.sin(a), abs=3.4e-16)
-        assert cosine == pytest.approx(math.cos(a), abs=3.4e-16)
+def test_elbow():
+    """To two roundings while the arm points outwards, and four where it points back."""
+    for a in np.linspace(-math.pi, math.pi, 40_001):
+        x, y, z = compiled._elbow(a, a * a, (1.0, -0.5, 1.0, 0.0))
+        tolerance = 4.5e-16 if abs(a) < math.pi / 2 else 9e-16
+        assert x == pytest.approx(math.cos(a), abs=tolerance)
+        assert y == 0.0
+        assert z == pytest.approx(-math.sin(a), abs=tolerance)
+
+
+def test_half_a_turn_either_way(stm32):
+    """The last angles that the loop itself does, and the first done with care."""
+    half = math.pi * np.array([1.0, np.nextafter(1.0, 2.0), np.nextafter(1.0, 0.0), 1.001, 0.999])
+    theta = np.stack([np.concatenate([half, -half]), np.full(10, 0.3), np.full(10, 0.4)], axis=-1)
+    same(forward_both_ways(stm32, theta), stm32.forward(theta), 1e-11)
+
+
+def test_level_with_the_base_and_above(stm32):
+    heights = (-200.0, -1e-12, -0.0, 0.0, 1e-12, 200.0)
+    points = np.array([[x, y, z] for x in (0.0, 300.0) for y in (0.0, 150.0) for z in heights])
+    expected = stm32.inverse(points)
+    assert np.isfinite(expected).all(axis=-1).sum() > 3
+    same(inverse_both_ways(stm32, points), expected, 1e-12)

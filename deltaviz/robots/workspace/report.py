@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any
 
@@ -62,15 +63,22 @@ def report(
     planar = workspace.margins.dimensions == 2
     centre = None if anywhere else (0.0,) * (workspace.margins.dimensions - 1)
     points = workspace.inside()
+    with ThreadPoolExecutor(workspace.threads) as pool:  # its compiled loops let others run
+        box = pool.submit(workspace.largest_box, floor=floor, centre=centre)
+        extents = pool.submit(lambda: workspace.extents)
+        cylinder = pool.submit(
+            lambda: None if planar else workspace.largest_cylinder(floor=floor, centre=centre)
+        )
+        parts = pool.submit(nearest_parts, robot)
     return Report(
         workspace=workspace,
-        extents=workspace.extents,
+        extents=extents.result(),
         reach=workspace.reach(None if floor is None else [floor]),
-        cylinder=None if planar else workspace.largest_cylinder(floor=floor, centre=centre),
-        box=workspace.largest_box(floor=floor, centre=centre),
+        cylinder=cylinder.result(),
+        box=box.result(),
         quality=_spreads(workspace.quality(points), points),
         zone_reached=zone_reached(workspace),
-        parts=nearest_parts(robot),
+        parts=parts.result(),
         payload=payload,
         holding=_holding(robot, points, payload),
         crossing=_crossing(robot, payload),
