@@ -13,11 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deltaviz.robots import Robot
-from deltaviz.robots.workspace import Belt, Limit, Margins, Workspace
+from deltaviz.robots.workspace import Belt, Limit, Margins
 from deltaviz.robots.workspace.cells import Box, hull
 from deltaviz.robots.workspace.empty import why_empty
 from deltaviz.robots.workspace.sheets import Chart, Sheet, best_level, farthest, spare
-from deltaviz.robots.workspace.stretch import Stretch
+from deltaviz.robots.workspace.stretch import Stretch, stretch
 from deltaviz.scene.units import metres
 from deltaviz.scene.workspace.objects import BELT, Thing
 from deltaviz.scene.workspace.pictures import Laid, Section, Served
@@ -89,23 +89,24 @@ class Serve:
 
     def pictures(self) -> Iterator[Served]:
         axis = self.thing.kind.belt_axis
-        workspace = Workspace(self.robot)
-        if axis is None or workspace.empty:
+        margins = Margins.of(self.robot, Limit.MACHINE)
+        box = hull(margins)
+        if axis is None or box is None:
             return
-        stretch = workspace.serve(Belt(BELT, 0.0, self.level, axis))
-        yield Served(f"{self.thing} at Z {self.level:g} mm: {_served(stretch)}")
+        found = stretch(margins, box, Belt(BELT, 0.0, self.level, axis))
+        yield Served(f"{self.thing} at Z {self.level:g} mm: {_served(found)}")
 
 
-def _served(stretch: Stretch) -> str:
-    if stretch.fits and stretch.start is not None and stretch.end is not None:
-        along = "XY"[stretch.belt.axis]
+def _served(found: Stretch) -> str:
+    if found.fits and found.start is not None and found.end is not None:
+        along = "XY"[found.belt.axis]
         return (
-            f"served over its whole width for {stretch.length:.0f} mm, "
-            f"{along} {stretch.start:.0f} to {stretch.end:.0f} mm."
+            f"served over its whole width for {found.length:.0f} mm, "
+            f"{along} {found.start:.0f} to {found.end:.0f} mm."
         )
-    if stretch.widest <= 0:
+    if found.widest <= 0:
         return "not served over its whole width; nothing of its middle is within reach."
-    return f"not served over its whole width; {stretch.widest:.0f} mm of it are."
+    return f"not served over its whole width; at most {found.widest:.0f} mm of it are."
 
 
 def _served_about(chart: Chart, axis: int) -> str:
