@@ -143,7 +143,8 @@ def _painted(chart: Chart) -> NDArray[np.uint8]:
     period = max(float(np.ptp(chart.x)), float(np.ptp(chart.y))) / _STRIPES
     along = (chart.x[None, :] + chart.y[:, None]) / period % 1.0
     hatched = np.where((along < _STRIPE_SHARE)[..., None], STRIPE, UNREACHED)
-    slope = np.maximum(np.hypot(*np.gradient(chart.margin)), 1e-9)  # of a pixel
+    down, right = np.gradient(chart.margin)  # of a pixel
+    slope = np.maximum(np.hypot(down, right), 1e-9)
     share = np.clip(0.5 + chart.margin / slope, 0.0, 1.0)[..., None]
     image = np.empty((*chart.margin.shape, 4), np.uint8)
     image[..., :3] = share * np.array(REACHED) + (1 - share) * hatched

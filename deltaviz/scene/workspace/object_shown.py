@@ -121,6 +121,8 @@ class ObjectShown:
             self._drawing.object(None)
             self._tell("")
         else:
+            if not self._readout.content:
+                self._tell("Computing …")
             self._quick(TOPIC, Lay(self._robot, self._thing, self._choices.level))
 
     def _fit_slider(self, section: Section) -> None:

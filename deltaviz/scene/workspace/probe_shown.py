@@ -130,6 +130,8 @@ class ProbeShown:
             self._probe(point)
 
     def _probe(self, point: Point) -> None:
+        if self._mark is None:
+            self._tell("Computing …")
         self._draw(point)
         self._quick(TOPIC, Probe(self._robot, point))
 
