@@ -22,6 +22,7 @@ SECTIONS = tuple(f"/reach/section_{axis}" for axis in "xyz")
 
 _OPACITY = 0.22
 _THIN = 0.002  # m, how thick a rectangle is drawn
+_LOWER = 0.0004  # m, that a thing is drawn below a section at its height: they would flicker
 
 
 class Drawing:
@@ -57,7 +58,7 @@ class Drawing:
         if section is None:
             self._drop(OBJECT)
         else:
-            self._picture(OBJECT, section)
+            self._picture(OBJECT, section, lower=_LOWER)
 
     def no_section(self, axis: int) -> None:
         self._drop(SECTIONS[axis])
@@ -95,10 +96,14 @@ class Drawing:
             shape = Shape(skin.vertices, skin.faces)
             self._mesh(BOUNDARY, shape, colours.REACH, _OPACITY)
 
-    def _picture(self, name: str, section: Section) -> None:
+    def _picture(self, name: str, section: Section, *, lower: float = 0.0) -> None:
         self.surfaces.flat[name] = section
         self._nodes[name] = self._scene.add_mesh_trimesh(
-            name, _glowing(section), cast_shadow=False, receive_shadow=False
+            name,
+            _glowing(section),
+            cast_shadow=False,
+            receive_shadow=False,
+            position=(0.0, 0.0, -lower),
         )
 
     def _mesh(self, name: str, shape: Shape, colour: colours.Colour, opacity: float) -> None:

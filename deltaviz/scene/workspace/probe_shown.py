@@ -86,7 +86,7 @@ class ProbeShown:
     def remove(self) -> None:
         self.leave()
         self._listen(False)
-        self._clear()
+        self._forget()
         self._inputs.remove()
 
     def _set_on(self, wanted: bool) -> None:
@@ -99,7 +99,7 @@ class ProbeShown:
         self._listen(on)
         if not on:
             self._place.value = ""
-        self._clear()
+        self._forget()
         self._tell(HINT if on else "")
 
     def _listen(self, wanted: bool) -> None:
@@ -160,10 +160,6 @@ class ProbeShown:
         for node in self._mark or ():
             node.remove()
         self._mark = None
-
-    def _clear(self) -> None:
-        self._forget()
-        self._tell("")
 
     def _tell(self, text: str) -> None:
         self._readout.content = _table([(text, "")]) if text else ""
