@@ -2,11 +2,12 @@
  * Mends viser's panel inside the frame.
  *
  * Its number boxes send half-typed and out-of-range numbers, so they are for reading only
- * (typed targets go into the console's fields). Its sliders have no names. And whoever only
- * watches cannot use it.
+ * (typed targets go into the console's fields). Its sliders and lines of text have no names.
+ * And whoever only watches cannot use it.
  */
 
 const BOX = "input.mantine-NumberInput-input";
+const LINE = "input.mantine-TextInput-input";
 const THUMB = ".mantine-Slider-thumb[role=slider]";
 const PANELS = '[data-testid="floating-panel"], .mantine-Paper-root[style*="position: fixed"]';
 
@@ -47,13 +48,13 @@ export class ViserPanel {
       if (!box.readOnly) box.readOnly = true;
       name(box, page, " value");
     }
-    for (const thumb of page.querySelectorAll(THUMB)) name(thumb, page, "");
+    for (const input of page.querySelectorAll(`${LINE}, ${THUMB}`)) name(input, page, "");
     for (const panel of page.querySelectorAll(PANELS)) panel.toggleAttribute("inert", this.#inert);
   }
 }
 
 /**
- * Names a thumb or a number box after the row it stands in.
+ * Names an input after the row it stands in.
  *
  * @param {Element} element
  * @param {Document} page

@@ -7,11 +7,14 @@ from collections import deque
 from collections.abc import Callable
 from enum import Enum, auto
 
-from viser import GuiCheckboxHandle, GuiDropdownHandle, GuiSliderHandle
+from viser import GuiCheckboxHandle, GuiDropdownHandle, GuiSliderHandle, GuiTextHandle
 
 from deltaviz.scene.inner import uuid_of
 
 _RETIRED_KEPT = 256
+LONGEST_TEXT = 80
+
+Handle = GuiSliderHandle[float] | GuiCheckboxHandle | GuiDropdownHandle[str] | GuiTextHandle
 
 
 class Judgement(Enum):
@@ -53,9 +56,14 @@ class Controls:
             lambda value: isinstance(value, str) and value in handle.options,
         )
 
-    def retire(
-        self, handle: GuiSliderHandle[float] | GuiCheckboxHandle | GuiDropdownHandle[str]
-    ) -> None:
+    def add_text(self, handle: GuiTextHandle) -> None:
+        """A line that changes a picture; what is half typed comes too."""
+        self._inputs[uuid_of(handle)] = (
+            Judgement.SHOWS,
+            lambda value: isinstance(value, str) and len(value) <= LONGEST_TEXT,
+        )
+
+    def retire(self, handle: Handle) -> None:
         """The input was removed; what is still on the way for it is harmless."""
         if self._inputs.pop(uuid_of(handle), None) is not None:
             self._retired.append(uuid_of(handle))

@@ -71,7 +71,20 @@ class NodeDrag(
     owner: Name = ""
 
 
-Frame = Camera | GuiUpdate | NodeDrag
+class Click(
+    msgspec.Struct, tag="ScenePointerMessage", tag_field="type", forbid_unknown_fields=True
+):
+    """A click anywhere in the picture, as a ray from the camera (viser's ScenePointerMessage); it
+    is sent only where this browser was asked to."""
+
+    event_type: Literal["click"]
+    ray_origin: Vector
+    ray_direction: Vector
+    screen_pos: tuple[Screen]
+    modifier: None
+
+
+Frame = Camera | GuiUpdate | NodeDrag | Click
 
 _decoder = msgspec.msgpack.Decoder(Frame)
 _encoder = msgspec.msgpack.Encoder()
@@ -92,6 +105,8 @@ def decode(data: bytes) -> Frame:
         raise FrameError("exactly one value was expected")
     if isinstance(frame, Camera) and not 0.5 < math.hypot(*frame.wxyz) < 2.0:
         raise FrameError("the camera's orientation is no rotation")
+    if isinstance(frame, Click) and not 0.5 < math.hypot(*frame.ray_direction) < 2.0:
+        raise FrameError("the ray has no direction")
     return frame
 
 

@@ -159,7 +159,7 @@ class _Visitor:
 
     def _judge(self, frame: frames.Frame) -> Judgement:
         controls = self.gate.controls
-        if isinstance(frame, frames.Camera):
+        if isinstance(frame, frames.Camera | frames.Click):
             return Judgement.SHOWS
         if isinstance(frame, frames.GuiUpdate):
             return controls.judge(frame.uuid, frame.value)

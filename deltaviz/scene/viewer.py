@@ -17,7 +17,8 @@ from deltaviz.scene.controls import Controls
 from deltaviz.scene.drag import BINDINGS, Dragging
 from deltaviz.scene.panel import Panel
 from deltaviz.scene.robot_model import RobotModel
-from deltaviz.scene.workspace.shown import Choices, Send, WorkspaceShown
+from deltaviz.scene.workspace.orders import Send
+from deltaviz.scene.workspace.shown import Choices, WorkspaceShown
 
 HANDLE = "/robot/effector/handle"
 

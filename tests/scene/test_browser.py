@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import json
+import re
 import threading
 from collections.abc import Iterator
 from typing import Any
@@ -187,6 +188,58 @@ def test_the_workspace_is_shown_and_cut_and_nothing_moves(page: Page, stand: Any
     moved = other_than(cut, page)
     assert len({bare, with_boundary, cut, moved}) == 4
     assert stand.machine.posted == []
+
+
+def told_of(page: Page, pattern: str) -> tuple[float, ...]:
+    """The numbers in the first text of the panel that matches, when there is one."""
+    page.locator("body", has_text=re.compile(pattern)).wait_for()
+    found = re.search(pattern, page.locator("body").inner_text())
+    assert found is not None
+    return tuple(map(float, found.groups()))
+
+
+NUMBER = r"(-?[0-9.]+)"
+TIP = rf"X {NUMBER}\s+Y {NUMBER}\s+Z {NUMBER}"
+ANGLES = rf"θ1 {NUMBER}°\s+θ2 {NUMBER}°\s+θ3 {NUMBER}°"
+
+
+def test_a_click_probes_a_point_of_the_paper_and_a_drag_does_not(page: Page, stand: Any) -> None:
+    page.set_viewport_size({"width": 740, "height": 760})  # a panel that need not be scrolled
+    at_rest(page, stand)
+    for folder in ("Angles", "Position", "Robot", "Workspace"):
+        page.get_by_text(folder, exact=True).click()
+    page.get_by_label("Object", exact=True).click()
+    page.get_by_role("option", name="A4 paper", exact=True).click()
+    (level,) = told_of(page, rf"A4 paper at Z {NUMBER} mm: fits")
+    page.get_by_label("Probe", exact=True).check()
+    page.get_by_text("or type X Y Z in mm").wait_for()
+    page.mouse.click(*on_screen(page, stand, (60.0, -70.0, level)))
+    angles, tip = np.radians(told_of(page, ANGLES)), told_of(page, TIP)
+    assert tip == pytest.approx((60.0, -70.0, level), abs=3.0)  # a pixel or two
+    # The arms' loops close: from each elbow to its joint on the effector it is a forearm.
+    for angle, azimuth in zip(angles, np.radians((0, 120, 240)), strict=True):
+        outward = np.array((np.cos(azimuth), np.sin(azimuth), 0.0))
+        elbow = (115 + 125 * np.cos(angle)) * outward - (0, 0, 125 * np.sin(angle))
+        assert np.linalg.norm(tip + 75 * outward - elbow) == pytest.approx(338, abs=0.15)
+    assert stand.machine.posted == []
+    x, y = on_screen(page, stand, stand.machine.snapshot.xyz)
+    hover(page, stand, x, y)
+    page.mouse.down()
+    page.mouse.move(x + 30, y, steps=6)
+    stand.eventually(lambda: stand.machine.of(DragTo))
+    page.mouse.up()
+    stand.eventually(lambda: stand.machine.of(DragEnd))
+    eye = np.array(the_client(stand).camera.position)
+    corner = picture(page)
+    page.mouse.move(corner["x"] + 30, corner["y"] + 30)
+    page.mouse.down()
+    page.mouse.move(corner["x"] + 90, corner["y"] + 30, steps=6)
+    page.mouse.up()
+    stand.eventually(lambda: np.linalg.norm(the_client(stand).camera.position - eye) > 0.02)
+    assert told_of(page, TIP) == tip
+    row = page.locator(".mantine-Flex-root:has(> div label)", has_text="Point").last
+    row.get_by_role("textbox").fill("0 0 -700")
+    page.get_by_text("Arm 2 cannot reach it").wait_for()
 
 
 def test_a_browser_that_goes_ends_its_drag(page: Page, stand: Any) -> None:

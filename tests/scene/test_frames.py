@@ -18,11 +18,20 @@ def encoded(message: dict[str, Any], **changes: Any) -> bytes:
 
 GUI = {"type": "GuiUpdateMessage", "uuid": "a", "updates": {"value": 1.5}}
 
+CLICK = {
+    "type": "ScenePointerMessage",
+    "event_type": "click",
+    "ray_origin": [0.9, -1.1, 0.3],
+    "ray_direction": [-0.6, 0.7, -0.4],
+    "screen_pos": [[0.4, 0.6]],
+    "modifier": None,
+}
+
 
 def test_what_a_page_sends_reaches_viser_unchanged(
     camera_message: dict[str, Any], drag_message: dict[str, Any]
 ) -> None:
-    for message in (camera_message, drag_message, GUI):
+    for message in (camera_message, drag_message, GUI, CLICK):
         passed = frames.encode(frames.decode(encoded(message)))
         assert messages.Message.deserialize(passed) == messages.Message.deserialize(
             encoded(message)

@@ -13,27 +13,30 @@ from deltaviz.robots.workspace.shapes import Cuboid
 from deltaviz.scene import colours, shapes
 from deltaviz.scene.shapes import Shape
 from deltaviz.scene.units import metres
+from deltaviz.scene.workspace.hits import Surfaces
 from deltaviz.scene.workspace.pictures import Fitted, Section, Skin
 
 BOUNDARY, OUTLINE, FITTED = "/reach/boundary", "/reach/outline", "/reach/fitted"
+OBJECT = "/reach/object"
 SECTIONS = tuple(f"/reach/section_{axis}" for axis in "xyz")
 
 _OPACITY = 0.22
 _THIN = 0.002  # m, how thick a rectangle is drawn
+_LOWER = 0.0004  # m, that a thing is drawn below a section at its height: they would flicker
 
 
 class Drawing:
     def __init__(self, scene: viser.SceneApi) -> None:
         self._scene = scene
         self._nodes: dict[str, viser.SceneNodeHandle] = {}
-        self._skin: Skin | None = None
+        self.surfaces = Surfaces()
 
     def skin(self, skin: Skin | None) -> None:
-        self._skin = None
+        self.surfaces.skin = None
         if skin is None or skin.reason is not None:
             self._drop(BOUNDARY, OUTLINE)
             return
-        self._skin = skin
+        self.surfaces.skin = skin
         self._fill()
         if len(skin.edges):
             self._nodes[OUTLINE] = self._scene.add_line_segments(
@@ -48,10 +51,14 @@ class Drawing:
 
     def section(self, section: Section) -> None:
         self._fill(covered=True)
-        name = SECTIONS[section.axis]
-        self._nodes[name] = self._scene.add_mesh_trimesh(
-            name, _glowing(section), cast_shadow=False, receive_shadow=False
-        )
+        self._picture(SECTIONS[section.axis], section)
+
+    def object(self, section: Section | None) -> None:
+        """A thing that lies in the scene, as a cut across z."""
+        if section is None:
+            self._drop(OBJECT)
+        else:
+            self._picture(OBJECT, section, lower=_LOWER)
 
     def no_section(self, axis: int) -> None:
         self._drop(SECTIONS[axis])
@@ -74,19 +81,30 @@ class Drawing:
         self._mesh(FITTED, shape, colours.FITTED, 0.35)
 
     def clear(self) -> None:
-        self._skin = None
+        self.surfaces.skin = None
         self._drop(*list(self._nodes))
 
     def _fill(self, *, covered: bool = False) -> None:
         """The boundary; in a plane not while a section lies in the same place."""
-        if self._skin is None:
+        skin = self.surfaces.skin
+        if skin is None:
             return
-        planar = len(self._skin.edges) > 0
+        planar = len(skin.edges) > 0
         if planar and (covered or SECTIONS[1] in self._nodes):
             self._drop(BOUNDARY)
         elif not covered:
-            shape = Shape(self._skin.vertices, self._skin.faces)
+            shape = Shape(skin.vertices, skin.faces)
             self._mesh(BOUNDARY, shape, colours.REACH, _OPACITY)
+
+    def _picture(self, name: str, section: Section, *, lower: float = 0.0) -> None:
+        self.surfaces.flat[name] = section
+        self._nodes[name] = self._scene.add_mesh_trimesh(
+            name,
+            _glowing(section),
+            cast_shadow=False,
+            receive_shadow=False,
+            position=(0.0, 0.0, -lower),
+        )
 
     def _mesh(self, name: str, shape: Shape, colour: colours.Colour, opacity: float) -> None:
         self._nodes[name] = self._scene.add_mesh_simple(
@@ -102,6 +120,7 @@ class Drawing:
 
     def _drop(self, *names: str) -> None:
         for name in names:
+            self.surfaces.flat.pop(name, None)
             node = self._nodes.pop(name, None)
             if node is not None:
                 node.remove()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import BinaryIO
 
@@ -11,6 +12,10 @@ from deltaviz.scene.workspace.tasks import Task
 
 Key = tuple[int, str]
 """Whose it is (a browser's number) and what: a newer order takes the place of one alike."""
+
+Send = Callable[[Key, Task | None], None]
+Topical = Callable[[str, Task | None], None]
+"""The same for one browser, by the topic alone."""
 
 
 @dataclass(frozen=True)

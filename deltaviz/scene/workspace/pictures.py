@@ -57,4 +57,43 @@ class Failed:
     text: str
 
 
-Picture = Skin | Section | Fitted | Failed
+@dataclass(frozen=True)
+class Laid:
+    """A thing that lies in the scene, as a cut across z whose colours tell what is within reach;
+    `text` tells it in words."""
+
+    section: Section
+    text: str
+
+
+@dataclass(frozen=True)
+class Served:
+    """How a belt that lies in the scene is served, as is proved."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Skill:
+    """How well the tool moves at one place; see `Quality`."""
+
+    condition: float
+    resolution: float
+    slowest: float
+    fastest: float
+
+
+@dataclass(frozen=True)
+class Probed:
+    """One place of the tool tip `xyz` (mm, in space). `theta_deg` are the arms' angles, None where
+    they do not reach; `why_not` says why the tip may not be there. `nearest`: limits, and how many
+    mm away they are, the nearest first; none for a place where it may not be."""
+
+    xyz: tuple[float, float, float]
+    theta_deg: tuple[float, ...] | None
+    why_not: tuple[str, ...]
+    nearest: tuple[tuple[str, float], ...]
+    skill: Skill | None
+
+
+Picture = Skin | Section | Fitted | Laid | Served | Probed | Failed

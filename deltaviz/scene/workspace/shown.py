@@ -19,15 +19,17 @@ from deltaviz.robots.coordinates import is_planar
 from deltaviz.scene.controls import Controls, Judgement
 from deltaviz.scene.workspace import tasks
 from deltaviz.scene.workspace.draw import Drawing
+from deltaviz.scene.workspace.inputs import Inputs
 from deltaviz.scene.workspace.measures import NAMES, PLAIN
-from deltaviz.scene.workspace.orders import Key
+from deltaviz.scene.workspace.object_shown import Laying, ObjectShown
+from deltaviz.scene.workspace.orders import Send, Topical
 from deltaviz.scene.workspace.pictures import Failed, Fitted, Picture, Section, Skin
+from deltaviz.scene.workspace.probe_shown import ProbeShown, Probing
 from deltaviz.scene.workspace.text import Told
 
 AXES = "XYZ"
 REST = 0.25  # s after the last change, when the boundary is refined
 
-Send = Callable[[Key, tasks.Task | None], None]
 Handle = GuiCheckboxHandle | GuiSliderHandle[float] | GuiDropdownHandle[str]
 
 
@@ -40,6 +42,8 @@ class Choices:
     measure: str = PLAIN
     sections: set[int] = field(default_factory=set[int])
     levels: dict[int, float] = field(default_factory=dict[int, float])
+    laying: Laying = field(default_factory=Laying)
+    probing: Probing = field(default_factory=Probing)
 
 
 class WorkspaceShown:
@@ -65,22 +69,30 @@ class WorkspaceShown:
         self._folder = client.gui.add_folder("Workspace", expand_by_default=False)
         self._handles: list[Handle] = []
         self._sliders: dict[int, GuiSliderHandle[float]] = {}
+        self._parts: list[ObjectShown | ProbeShown] = []
         self._start(robot)
 
     def set_robot(self, robot: Robot) -> None:
         """Another robot: other sections; where they stood means nothing to it."""
         self._stop()
         self._choices.levels.clear()
+        self._choices.laying.level = None
         self._start(robot)
 
     def leave(self) -> None:
         """The browser is gone, and with it what was drawn."""
         self._cancel_all()
+        for part in self._parts:
+            part.leave()
         for handle in self._handles:
             self._controls.retire(handle)
 
     def take(self, topic: str, picture: Picture) -> None:
         """A picture that was ordered has come."""
+        for part in self._parts:
+            if topic in part.topics:
+                part.take(picture)
+                return
         match picture:
             case Skin():
                 if self._choices.boundary and not self._is_older(picture):
@@ -110,8 +122,11 @@ class WorkspaceShown:
         self._robot = robot
         self._told = Told(planar=is_planar(robot))
         with self._folder:
+            self._parts = [self._added_probe()]  # at the top, to be seen while clicking
             self._add_inputs()
             self._readout = self._client.gui.add_html("")
+            if not is_planar(robot):
+                self._parts.append(self._added_object())
         self._tell()
         self._order_boundary()
         self._order_fitted()
@@ -119,6 +134,8 @@ class WorkspaceShown:
 
     def _stop(self) -> None:
         self._cancel_all()
+        for part in self._parts:
+            part.remove()
         self._drawing.clear()
         for handle in self._handles:
             self._controls.retire(handle)
@@ -126,6 +143,32 @@ class WorkspaceShown:
         self._readout.remove()
         self._handles.clear()
         self._sliders.clear()
+
+    def _added_probe(self) -> ProbeShown:
+        low, high = roughly(self._robot, 2)
+        return ProbeShown(
+            Inputs(self._client.gui, self._controls),
+            self._client.scene,
+            self._drawing.surfaces,
+            self._choices.probing,
+            self._robot,
+            high - low,
+            quick=self._by_topic(self._quick),
+        )
+
+    def _added_object(self) -> ObjectShown:
+        return ObjectShown(
+            Inputs(self._client.gui, self._controls),
+            self._drawing,
+            self._choices.laying,
+            self._robot,
+            roughly(self._robot, 2),
+            quick=self._by_topic(self._quick),
+            patient=self._by_topic(self._patient),
+        )
+
+    def _by_topic(self, send: Send) -> Topical:
+        return lambda topic, task: send((self._client.client_id, topic), task)
 
     # The panel's inputs.
 
