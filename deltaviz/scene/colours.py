@@ -14,6 +14,7 @@ GHOST: Colour = (64, 156, 236)
 TRAIL: Colour = (46, 160, 190)
 REACH: Colour = (72, 148, 214)
 FITTED: Colour = (236, 150, 62)
+SINGULAR: tuple[Colour, Colour] = ((152, 92, 214), (222, 66, 66))  # of type 1, of type 2
 GRID: Colour = (128, 138, 148)
 OUTLINE: Colour = (138, 148, 158)
 _WARN: Colour = (245, 176, 20)
