@@ -105,9 +105,8 @@ def singular(robot: Robot, kind: Kind, *, limits: Limit = Limit.MACHINE) -> Sing
     *_, boundary = islice(levels(robot, limits), 2)
     reached = _reached(robot)
     measure = reached if kind is Kind.TYPE_1 else _held(robot)
-    # Of type 1 is all that ends the reach: within rounding of it.
-    inside = reached if kind is Kind.TYPE_2 else lambda tips: reached(tips) + ZERO
-    search = _Search(measure, inside, margins, boundary, NEAR * size)
+    within = _everywhere if kind is Kind.TYPE_1 else reached
+    search = _Search(measure, within, margins, boundary, NEAR * size)
     grid = Grid.around(box.grown(NEAR), size / CELLS[margins.dimensions])
     index, faces = level_set(measure(np.stack(np.meshgrid(*grid.axes, indexing="ij"), axis=-1)))
     vertices, kept, apart = search.onto(grid.low + grid.cell * index, grid.cell)
@@ -118,6 +117,10 @@ def singular(robot: Robot, kind: Kind, *, limits: Limit = Limit.MACHINE) -> Sing
     if (kept >= 0).any():
         distance = search.nearest(vertices[kept >= 0], apart[kept >= 0], grid.cell)
     return Singular(*clipped(vertices, faces, kept), distance, search.near)
+
+
+def _everywhere(tips: Array) -> Array:
+    return np.full(tips.shape[:-1], np.inf)
 
 
 def _reached(robot: Robot) -> Measure:
