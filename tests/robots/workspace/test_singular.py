@@ -73,8 +73,12 @@ def test_control_is_lost_on_the_surfaces_and_not_in_the_workspace(
         lengths = np.sqrt(squares(mechanism, centre, theta))
         assert np.abs(lengths - mechanism.forearm).max() < 0.3  # mm: the arms are closed
         value = judge(mechanism, centre, theta)
-        assert np.median(value) < 1e-3 if is_lost else value.min() > 0.1
-        assert value.max() < 0.05 if is_lost else value.min() > 0.1
+        if is_lost:  # but for chords at the rims, and where two arms' ends meet
+            assert np.median(value) < 1e-3
+            assert np.percentile(value, 99) < 0.05
+            assert value.max() < 0.14  # the workspace's own reserve from type 1
+        else:
+            assert value.min() > 0.14
     assert len(where) > 1000
 
 
