@@ -15,6 +15,7 @@ TRAIL: Colour = (46, 160, 190)
 REACH: Colour = (72, 148, 214)
 FITTED: Colour = (236, 150, 62)
 PROBE: Colour = (206, 40, 132)
+SINGULAR: tuple[Colour, Colour] = ((152, 92, 214), (222, 66, 66))  # of type 1, of type 2
 GRID: Colour = (128, 138, 148)
 OUTLINE: Colour = (138, 148, 158)
 _WARN: Colour = (245, 176, 20)

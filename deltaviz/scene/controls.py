@@ -25,12 +25,16 @@ class Judgement(Enum):
 
 
 class Controls:
-    """The inputs and draggable nodes that browsers may use. Read by the gateway's thread."""
+    """The inputs and draggable nodes that browsers may use. Read by the gateway's thread.
+
+    To drag one of `draggable` moves the robot; of `slidable`, a part of one browser's picture.
+    """
 
     def __init__(self) -> None:
         self._inputs: dict[str, tuple[Judgement, Callable[[object], bool]]] = {}
         self._retired: deque[str] = deque(maxlen=_RETIRED_KEPT)
         self.draggable: frozenset[str] = frozenset()
+        self.slidable: frozenset[str] = frozenset()
 
     def add_slider(
         self, handle: GuiSliderHandle[float], judgement: Judgement = Judgement.STEERS
@@ -74,3 +78,8 @@ class Controls:
             return Judgement.STALE if uuid in self._retired else Judgement.REFUSED
         judgement, accepts = entry
         return judgement if accepts(value) else Judgement.REFUSED
+
+    def judge_drag(self, node: str) -> Judgement:
+        if node in self.draggable:
+            return Judgement.STEERS
+        return Judgement.SHOWS if node in self.slidable else Judgement.REFUSED

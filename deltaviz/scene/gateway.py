@@ -163,7 +163,7 @@ class _Visitor:
             return Judgement.SHOWS
         if isinstance(frame, frames.GuiUpdate):
             return controls.judge(frame.uuid, frame.value)
-        return Judgement.STEERS if frame.name in controls.draggable else Judgement.REFUSED
+        return controls.judge_drag(frame.name)
 
     def _may_steer(self, now: float) -> bool:
         if self.session is not None and self.gate.may_steer(self.session):

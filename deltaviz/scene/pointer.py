@@ -78,14 +78,19 @@ class Grip:
     def along_vertical(self, eye: Eye, screen: Screen) -> Array | None:
         """The tip when the grabbed place is as high as the pointer, on its own vertical line;
         None when the camera looks down along it."""
-        towards = self.grabbed - eye.position
-        normal = np.array((towards[0], towards[1], 0.0))
-        if np.linalg.norm(normal) < _GRAZING * np.linalg.norm(towards):
-            return None
-        hit = _hit(eye, screen, self.grabbed, normal / np.linalg.norm(normal))
-        if hit is None:
-            return None
-        return self.tip + np.array((0.0, 0.0, hit[2] - self.grabbed[2]))
+        way = along(eye, screen, self.grabbed, np.array((0.0, 0.0, 1.0)))
+        return None if way is None else self.tip + np.array((0.0, 0.0, way))
+
+
+def along(eye: Eye, screen: Screen, through: Array, direction: Array) -> float | None:
+    """How far along a line through a place its point under the pointer lies from there;
+    `direction` is a unit vector. None when the camera looks along the line."""
+    towards = through - eye.position
+    normal = towards - (towards @ direction) * direction
+    if np.linalg.norm(normal) < _GRAZING * np.linalg.norm(towards):
+        return None
+    hit = _hit(eye, screen, through, normal / np.linalg.norm(normal))
+    return None if hit is None else float((hit - through) @ direction)
 
 
 def _hit(eye: Eye, screen: Screen, through: Array, normal: Array) -> Array | None:

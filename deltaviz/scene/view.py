@@ -32,6 +32,7 @@ from deltaviz.scene.stage import Stage
 from deltaviz.scene.trail import Trail
 from deltaviz.scene.units import metres
 from deltaviz.scene.viewer import HANDLE, Display, Viewer
+from deltaviz.scene.workspace.grips import GRIPS
 from deltaviz.scene.workspace.orders import Reply
 from deltaviz.scene.workspace.worker import Worker
 
@@ -144,6 +145,7 @@ class Scene:
             self._stage.fit(robot, model)
             self._trail.start(0.018 * model.thickness)
             self._controls.draggable = frozenset((model.effector.name, HANDLE))
+            self._controls.slidable = frozenset(GRIPS)
             self._show(self._machine.snapshot)
         for viewer in self._viewers.values():
             viewer.hold(model)

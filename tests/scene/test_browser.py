@@ -242,6 +242,50 @@ def test_a_click_probes_a_point_of_the_paper_and_a_drag_does_not(page: Page, sta
     page.get_by_text("Arm 2 cannot reach it").wait_for()
 
 
+def test_a_section_is_dragged_along_its_axis_and_the_robot_stays(page: Page, stand: Any) -> None:
+    page.get_by_text("Angles", exact=True).click()
+    page.get_by_text("Position", exact=True).click()
+    page.get_by_text("Workspace", exact=True).click()
+    page.get_by_label("Section Z", exact=True).check()
+    scene = the_client(stand).scene
+    grip = stand.eventually(lambda: scene.get_handle_by_name("/reach/grip_z"))
+
+    tips = grip.vertices[grip.vertices[:, 2] == grip.vertices[:, 2].max()]
+    tip = max(tips, key=lambda tip: tip[0] - tip[1]) * 1000.0  # of the arrow in front
+
+    def arrow() -> tuple[float, float]:
+        x, y, z = tip * (1.0, 1.0, 0.7)
+        return on_screen(page, stand, (x, y, z + grip.position[2] * 1000.0))
+
+    level = page.locator(".mantine-Flex-root:has(> div label)", has_text="mm along Z").last
+    box = level.get_by_role("textbox")
+    before, shown = float(box.input_value()), look(page)
+    x, y = arrow()
+    hover(page, stand, x, y)
+    page.mouse.down()
+    page.mouse.move(x, y + 50, steps=6)
+    jitter = itertools.cycle((0, 1))
+
+    def under_the_pointer() -> bool:
+        page.mouse.move(x + next(jitter), y + 50)
+        page.wait_for_timeout(100)
+        return abs(arrow()[1] - (y + 50)) < 4.0
+
+    stand.eventually(under_the_pointer)
+    page.mouse.up()
+    page.mouse.move(5, 5)
+    stand.eventually(lambda: float(box.input_value()) == pytest.approx(grip.position[2] * 1000))
+    assert float(box.input_value()) < before - 20.0
+    assert other_than(shown, page) != shown
+    eye = the_client(stand).camera.position
+    page.mouse.move(x, 100)
+    page.mouse.down()
+    page.mouse.move(x - 60, 100, steps=4)
+    page.mouse.up()
+    stand.eventually(lambda: not np.allclose(the_client(stand).camera.position, eye, atol=1e-3))
+    assert stand.machine.posted == []
+
+
 def test_a_browser_that_goes_ends_its_drag(page: Page, stand: Any) -> None:
     x, y = on_screen(page, stand, stand.machine.snapshot.xyz)
     hover(page, stand, x, y)

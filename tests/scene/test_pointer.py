@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from deltaviz.scene import rotations
-from deltaviz.scene.pointer import Eye, Grip
+from deltaviz.scene.pointer import Eye, Grip, along
 
 
 def eye_at(position: tuple[float, float, float], look_at: tuple[float, float, float]) -> Eye:
@@ -93,3 +93,19 @@ def test_looking_straight_down_there_is_no_height() -> None:
 )
 def test_yaw_is_where_right_is(position: tuple[float, float, float], yaw: float) -> None:
     assert eye_at(position, (0.0, 0.0, 0.0)).yaw == pytest.approx(yaw)
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_a_place_on_a_line_follows_the_pointer(axis: int) -> None:
+    direction = np.eye(3)[axis]
+    through = np.array((0.1, -0.05, -0.25))
+    for way in (-0.07, 0.0, 0.12):
+        wanted = EYE.project(through + way * direction)
+        assert along(EYE, wanted, through, direction) == pytest.approx(way, abs=1e-9)
+    beside = along(EYE, (0.4, 0.6), through, direction)
+    assert beside is not None  # beside the line, too
+
+
+def test_a_line_that_is_looked_along_tells_nothing() -> None:
+    above = eye_at((0.0, -1e-4, 2.0), (0.0, 0.0, 0.0))
+    assert along(above, (0.5, 0.4), np.zeros(3), np.array((0.0, 0.0, 1.0))) is None

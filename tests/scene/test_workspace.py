@@ -3,22 +3,28 @@ of it moves the robot."""
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
+import io
+import itertools
 import math
 from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
 import pytest
+import trimesh
 import viser
 
 from deltaviz.mechanism import RotaryDelta
 from deltaviz.robots import Robot
 from deltaviz.robots.workspace import Cylinder
 from deltaviz.scene.workspace.draw import Drawing
+from deltaviz.scene.workspace.measures import coloured
 from deltaviz.scene.workspace.orders import Reply
-from deltaviz.scene.workspace.pictures import Failed, Fitted, Section, Skin
+from deltaviz.scene.workspace.pictures import Failed, Fitted, Section, Skin, Surface
 from deltaviz.scene.workspace.tasks import Coarse, Cut, Fit
+from deltaviz.scene.workspace.text import how_near
 from deltaviz.scene.workspace.worker import Worker
 
 Visit = Callable[[str | None], Any]
@@ -70,6 +76,123 @@ def test_sections_follow_their_sliders_in_a_colour_that_has_a_key(stand: Any, vi
         choose(viewer, "mm along Z", level)
         viewer.read(drawn("/reach/section_z"), LONG)
     assert stand.machine.posted == []
+
+
+def drag(visitor: Any, message: dict[str, Any], *places: tuple[float, float]) -> None:
+    """Grab at the first of these places of the screen, move over the others, let go at the last."""
+    first, *others = places
+    message = message | {"start_screen_pos": first, "end_screen_pos": first}
+    visitor.send(**message)
+    for place in others:
+        visitor.send(**(message | {"phase": "update", "end_screen_pos": place}))
+    visitor.send(**(message | {"phase": "end", "end_screen_pos": places[-1]}))
+
+
+def slid(visitor: Any, label: str) -> float:
+    """The next value that a slider is told to show."""
+    uuid = visitor.input(label)
+    found = visitor.read(lambda m: m.get("uuid") == uuid and "value" in m.get("updates", {}))
+    return found["updates"]["value"]
+
+
+def test_a_section_is_dragged_by_who_only_watches(
+    stand: Any, viewer: Any, camera_message: dict[str, Any], drag_message: dict[str, Any]
+) -> None:
+    """The camera looks up along Z from (0.9, -1.1, 0.3) m, X to the right; a metre above it the
+    picture is 2 tan(fov / 2) m high."""
+    choose(viewer, "Section X", True)
+    grip = viewer.read(drawn("/reach/grip_x"), LONG)
+    at = drag_message | {"name": grip["name"], "owner": grip["owner"]}
+    at["start_position"] = (0.9, -1.1, 1.3)
+    width = 2 * math.tan(camera_message["fov"] / 2) * 648 / 752
+    drag(viewer, at, (0.5, 0.5), (0.6, 0.55))
+    assert slid(viewer, "mm along X") == round(100 * width)
+    moved = viewer.read(lambda m: m["type"] == "SetPositionMessage" and "grip" in m["name"])
+    assert moved["position"] == pytest.approx((round(100 * width) / 1000, 0, 0))
+    viewer.read(drawn("/reach/section_x"), LONG)
+    drag(viewer, at, (0.5, 0.5), (9.0, 0.5))
+    (cut,) = Cut(stand.machine.robot, 0, 0.0, "One colour", (2,)).pictures()
+    assert isinstance(cut, Section)
+    assert slid(viewer, "mm along X") == pytest.approx(cut.span[1], abs=1.0)
+    assert stand.machine.posted == []
+
+
+def height(mesh: dict[str, Any]) -> float:
+    """Of a level picture, mm."""
+    scene = trimesh.load_scene(io.BytesIO(mesh["props"]["glb_data"]), file_type="glb")
+    return float(scene.bounds[:, 2].mean()) * 1000
+
+
+def test_a_section_that_moves_on_and_on_is_seen_on_its_way(viewer: Any) -> None:
+    """An order breaks off the one before it, so the next waits until a picture has come."""
+    choose(viewer, "Colours", "Conditioning")
+    choose(viewer, "Section Z", True)
+    viewer.read(drawn("/reach/section_z"), LONG)
+    seen: set[float] = set()
+    for number in itertools.count():
+        choose(viewer, "mm along Z", level := -250.0 - number % 100)
+        with contextlib.suppress(TimeoutError):  # slower than a hand, quicker than a picture
+            seen.add(height(viewer.read(drawn("/reach/section_z"), 0.03)))
+        if len(seen) == 4:
+            break
+    assert number < 3000
+    viewer.read(lambda m: drawn("/reach/section_z")(m) and abs(height(m) - level) < 0.1, LONG)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [{"name": "/reach/grip_q"}, {"name": "/reach/section_x"}, {"end_screen_pos": (math.nan, 0.5)}],
+)
+def test_nothing_else_of_the_workspace_is_dragged(
+    stand: Any, viewer: Any, drag_message: dict[str, Any], change: dict[str, Any]
+) -> None:
+    viewer.send(**(drag_message | {"name": "/reach/grip_x"} | change))
+    assert viewer.closed()[0] == 1008
+    assert stand.machine.posted == []
+
+
+def test_singularities_are_shown_and_told(stand: Any, viewer: Any) -> None:
+    choose(viewer, "Singularities", True)
+    for name in ("/reach/type_1", "/reach/type_2"):
+        assert viewer.read(drawn(name), LONG)["props"]["opacity"] < 0.6
+    words = viewer.read(told("Type 1"), LONG)["updates"]["content"]
+    assert words.count("mm of the workspace") == 2
+    choose(viewer, "Singularities", False)
+    viewer.read(lambda m: m["type"] == "RemoveSceneNodeMessage" and m["name"] == "/reach/type_2")
+    assert stand.machine.posted == []
+
+
+@pytest.mark.parametrize(
+    ("distance", "words"),
+    [
+        (11.2, "comes to within 12 mm of the workspace."),
+        (None, "none within 60 mm of the workspace."),
+        (0.0, "goes through the workspace."),
+    ],
+)
+def test_how_near_a_singularity_comes_is_said(distance: float | None, words: str) -> None:
+    nothing = np.empty((0, 3), np.float32)
+    surface = Surface(nothing, nothing.astype(np.uint32), nothing, distance, 60.0)
+    assert how_near(surface) == words
+
+
+def test_the_boundary_has_a_section_s_colours(robot: Robot) -> None:
+    (skin,) = Coarse(robot, "Resolution").pictures()
+    assert isinstance(skin, Skin)
+    assert skin.share is not None
+    assert skin.share.max() - skin.share.min() > 0.5
+    for vertex in range(100, len(skin.vertices), len(skin.vertices) // 6):
+        x, y, z = skin.vertices[vertex].astype(float)
+        (cut,) = Cut(robot, 2, z * 1000, "Resolution").pictures()
+        assert isinstance(cut, Section)
+        assert cut.scale == skin.scale
+        rows, columns = cut.image.shape[:2]
+        share = (np.array((x, y)) - cut.low[:2]) / (cut.high - cut.low)[:2]
+        column, row = np.floor(share * (columns, rows)).astype(int)
+        around = cut.image[max(row - 1, 0) : row + 2, max(column - 1, 0) : column + 2]
+        seen = around[around[..., 3] > 0][:, :3].astype(int)
+        expected = coloured(skin.share[vertex]).astype(int)
+        assert np.abs(seen - expected).max(axis=-1).min() <= 12, vertex
 
 
 @pytest.mark.parametrize(

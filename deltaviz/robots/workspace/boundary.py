@@ -57,32 +57,34 @@ class Boundary:
 def march(margins: Margins, field: Field) -> Boundary:
     """Marching cubes (squares in a plane), with every vertex then moved along its grid line to
     where the margin is 0. Some 100 ns a node; `deviation` is not measured (NaN)."""
-    index, faces = _level_set(field)
+    index, faces = level_set(field.value)
     vertices = _exact(margins, field, index) if len(index) else np.empty((0, len(field.grid.shape)))
     _, code = margins.nearest(vertices)
     return Boundary(vertices, faces, code, margins.names, field.grid.cell, float("nan"))
 
 
-def _level_set(field: Field) -> tuple[Array, Faces]:
-    """Vertices in grid steps, and faces."""
-    dimensions = len(field.grid.shape)
-    if not (field.value >= 0).any():
+def level_set(value: Array | NDArray[np.float32]) -> tuple[Array, Faces]:
+    """Where a value on the nodes of a grid goes through 0: vertices in grid steps, and faces."""
+    dimensions = value.ndim
+    if value.min() >= 0 or value.max() < 0:
         return np.empty((0, dimensions)), np.empty((0, dimensions), np.int64)
     if dimensions == 3:
         from skimage.measure import marching_cubes
 
-        index, faces, _, _ = marching_cubes(field.value, 0.0, gradient_direction="ascent")
+        index, faces, _, _ = marching_cubes(value, 0.0, gradient_direction="ascent")
         return index.astype(np.float64), faces.astype(np.int64)
     from skimage.measure import find_contours
 
-    loops = find_contours(field.value, 0.0, fully_connected="high")
-    index = np.concatenate([loop[:-1] for loop in loops])
-    start, faces = 0, []
+    loops = find_contours(value, 0.0, fully_connected="high")
+    start, index, faces = 0, [], []
     for loop in loops:
-        ring = start + np.arange(len(loop) - 1)
-        faces.append(np.stack((np.roll(ring, -1), ring), axis=-1))
+        closed = bool((loop[0] == loop[-1]).all())  # else it ends at the grid's edge
+        ring = start + np.arange(len(loop) - closed)
+        segments = np.stack((np.roll(ring, -1), ring), axis=-1)
+        index.append(loop[: len(ring)])
+        faces.append(segments if closed else segments[:-1])
         start += len(ring)
-    return index, np.concatenate(faces)
+    return np.concatenate(index), np.concatenate(faces)
 
 
 def _exact(margins: Margins, field: Field, index: Array) -> Array:

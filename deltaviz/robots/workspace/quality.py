@@ -85,7 +85,7 @@ def quality(robot: Robot, points: ArrayLike) -> Quality:
         most_force=dexterity.most_force,
         resolution=Dexterity.of(jacobian / steps).fastest,
         type_1=_type_1(mechanism, centre, theta),
-        type_2=_type_2(mechanism, centre, theta),
+        type_2=type_2(mechanism, centre, theta),
         joint_margin_deg=np.degrees(np.minimum(theta - low, high - theta).min(axis=-1)),
         ball_joint_deg=_ball_joint(mechanism, centre) + 0.0 * theta.sum(axis=-1),
     )
@@ -98,7 +98,8 @@ def _type_1(mechanism: RotaryDelta | FiveBar, centre: Array, theta: Array) -> Ar
     return np.sqrt(squares) + 0.0 * theta.sum(axis=-1)
 
 
-def _type_2(mechanism: RotaryDelta | FiveBar, centre: Array, theta: Array) -> Array:
+def type_2(mechanism: RotaryDelta | FiveBar, centre: Array, theta: Array) -> Array:
+    """Of effector's centres (..., d) mm and their joint angles: see `Quality`."""
     forearms = unit(centre[..., None, :] - mechanism.elbows(theta))
     held = stiffness(forearms) if mechanism.joints == 3 else planar_stiffness(forearms)
     return -mechanism.handedness * held

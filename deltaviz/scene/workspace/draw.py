@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import trimesh
 import viser
+from numpy.typing import NDArray
 from PIL import Image
 from trimesh.visual.material import PBRMaterial
 from trimesh.visual.texture import TextureVisuals
@@ -14,13 +17,17 @@ from deltaviz.scene import colours, shapes
 from deltaviz.scene.shapes import Shape
 from deltaviz.scene.units import metres
 from deltaviz.scene.workspace.hits import Surfaces
-from deltaviz.scene.workspace.pictures import Fitted, Section, Skin
+from deltaviz.scene.workspace.measures import coloured
+from deltaviz.scene.workspace.pictures import Fitted, Section, Singularities, Skin
 
 BOUNDARY, OUTLINE, FITTED = "/reach/boundary", "/reach/outline", "/reach/fitted"
 OBJECT = "/reach/object"
+SINGULAR = "/reach/type_1", "/reach/type_2"
 SECTIONS = tuple(f"/reach/section_{axis}" for axis in "xyz")
 
 _OPACITY = 0.22
+_COLOURED = 0.5  # how opaque a boundary is that shows a measure
+_SINGULAR = 0.45
 _THIN = 0.002  # m, how thick a rectangle is drawn
 _LOWER = 0.0004  # m, that a thing is drawn below a section at its height: they would flicker
 
@@ -39,13 +46,7 @@ class Drawing:
         self.surfaces.skin = skin
         self._fill()
         if len(skin.edges):
-            self._nodes[OUTLINE] = self._scene.add_line_segments(
-                OUTLINE,
-                points=skin.edges,
-                colors=colours.REACH,
-                thickness=2.0,
-                thickness_units="screen",
-            )
+            self._lines(OUTLINE, skin.edges, colours.REACH)
         else:
             self._drop(OUTLINE)
 
@@ -80,6 +81,17 @@ class Drawing:
             shape = shapes.cylinder(radius, low, high, segments=96).moved(centre)
         self._mesh(FITTED, shape, colours.FITTED, 0.35)
 
+    def singular(self, found: Singularities | None) -> None:
+        surfaces = (None, None) if found is None else (found.type_1, found.type_2)
+        kinds = zip(SINGULAR, surfaces, colours.SINGULAR, strict=True)
+        for name, surface, colour in kinds:
+            if surface is None or surface.distance is None:
+                self._drop(name)
+            elif len(surface.faces):
+                self._mesh(name, Shape(surface.vertices, surface.faces), colour, _SINGULAR)
+            else:
+                self._lines(name, surface.edges, colour)
+
     def clear(self) -> None:
         self.surfaces.skin = None
         self._drop(*list(self._nodes))
@@ -92,19 +104,15 @@ class Drawing:
         planar = len(skin.edges) > 0
         if planar and (covered or SECTIONS[1] in self._nodes):
             self._drop(BOUNDARY)
+        elif not covered and skin.share is not None and not planar:
+            self._glb(BOUNDARY, _shaded(skin, skin.share))
         elif not covered:
             shape = Shape(skin.vertices, skin.faces)
             self._mesh(BOUNDARY, shape, colours.REACH, _OPACITY)
 
     def _picture(self, name: str, section: Section, *, lower: float = 0.0) -> None:
         self.surfaces.flat[name] = section
-        self._nodes[name] = self._scene.add_mesh_trimesh(
-            name,
-            _glowing(section),
-            cast_shadow=False,
-            receive_shadow=False,
-            position=(0.0, 0.0, -lower),
-        )
+        self._glb(name, _glowing(section), lower=lower)
 
     def _mesh(self, name: str, shape: Shape, colour: colours.Colour, opacity: float) -> None:
         self._nodes[name] = self._scene.add_mesh_simple(
@@ -116,6 +124,20 @@ class Drawing:
             side="double",
             cast_shadow=False,
             receive_shadow=False,
+        )
+
+    def _lines(self, name: str, edges: NDArray[np.float32], colour: colours.Colour) -> None:
+        self._nodes[name] = self._scene.add_line_segments(
+            name, points=edges, colors=colour, thickness=2.0, thickness_units="screen"
+        )
+
+    def _glb(self, name: str, mesh: trimesh.Trimesh, *, lower: float = 0.0) -> None:
+        self._nodes[name] = self._scene.add_mesh_trimesh(
+            name,
+            mesh,
+            cast_shadow=False,
+            receive_shadow=False,
+            position=(0.0, 0.0, -lower),
         )
 
     def _drop(self, *names: str) -> None:
@@ -134,6 +156,30 @@ def _glowing(section: Section) -> trimesh.Trimesh:
     corners[1:3, first] = section.high[first]
     corners[2:, second] = section.high[second]
     picture = Image.fromarray(section.image[::-1])  # a texture's first row is its top
+    uv = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
+    faces = np.array([(0, 1, 2), (0, 2, 3)])
+    return _textured(corners, faces, uv, picture, alphaMode="MASK", alphaCutoff=0.5)
+
+
+def _shaded(skin: Skin, share: NDArray[np.float32]) -> trimesh.Trimesh:
+    """The boundary in a measure's colours, in the same way: each vertex at its place on a picture
+    of the scale."""
+    steps = 256
+    picture = np.full((1, steps, 4), 255, np.uint8)
+    picture[..., :3] = coloured(np.linspace(0.0, 1.0, steps))
+    picture[..., 3] = round(255 * _COLOURED)
+    along = (share * (steps - 1) + 0.5) / steps  # between the middles of its ends
+    uv = np.stack((along, np.full_like(along, 0.5)), axis=-1)
+    return _textured(skin.vertices, skin.faces, uv, Image.fromarray(picture), alphaMode="BLEND")
+
+
+def _textured(
+    vertices: NDArray[Any],
+    faces: NDArray[Any],
+    uv: NDArray[Any],
+    picture: Image.Image,
+    **alpha: object,
+) -> trimesh.Trimesh:
     material = PBRMaterial(
         baseColorTexture=picture,
         baseColorFactor=[0, 0, 0, 255],
@@ -141,11 +187,8 @@ def _glowing(section: Section) -> trimesh.Trimesh:
         emissiveFactor=[1.0, 1.0, 1.0],
         metallicFactor=0.0,
         roughnessFactor=1.0,
-        alphaMode="MASK",
-        alphaCutoff=0.5,
         doubleSided=True,
+        **alpha,
     )
-    uv = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
     visual = TextureVisuals(uv=uv, material=material)
-    faces = [(0, 1, 2), (0, 2, 3)]
-    return trimesh.Trimesh(vertices=corners, faces=faces, visual=visual, process=False)
+    return trimesh.Trimesh(vertices=vertices, faces=faces, visual=visual, process=False)

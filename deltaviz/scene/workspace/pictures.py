@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deltaviz.robots.workspace.shapes import Cuboid, Cylinder
+from deltaviz.scene.workspace.measures import PLAIN
 
 
 @dataclass(frozen=True)
@@ -15,7 +16,8 @@ class Skin:
     """The boundary: `vertices` (n, 3) float32, `faces` (m, 3); in a plane the filled outline.
 
     `edges` (k, 2, 3) is a plane's outline. `size` is mm³, or mm² in a plane; `deviation` (mm) is
-    None while it is coarse. An empty one has a `reason`.
+    None while it is coarse. An empty one has a `reason`. `share` (n,) is each vertex's place on the
+    scale of a `measure`, from 0 to 1, and `scale` the ends of that; None in one colour.
     """
 
     vertices: NDArray[np.float32]
@@ -24,6 +26,9 @@ class Skin:
     size: float
     deviation: float | None
     reason: str | None
+    measure: str = PLAIN
+    share: NDArray[np.float32] | None = None
+    scale: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)
@@ -48,6 +53,26 @@ class Fitted:
     largest rectangle); None if nothing fits."""
 
     shape: Cylinder | Cuboid | None
+
+
+@dataclass(frozen=True)
+class Surface:
+    """Where the robot is singular in one way: `vertices` (n, 3), `faces` (m, 3), or in a plane
+    `edges` (k, 2, 3). `distance` (mm) is how near it comes to the workspace; None if not `near`."""
+
+    vertices: NDArray[np.float32]
+    faces: NDArray[np.uint32]
+    edges: NDArray[np.float32]
+    distance: float | None
+    near: float
+
+
+@dataclass(frozen=True)
+class Singularities:
+    """None if the workspace is empty."""
+
+    type_1: Surface | None
+    type_2: Surface | None
 
 
 @dataclass(frozen=True)
@@ -96,4 +121,4 @@ class Probed:
     skill: Skill | None
 
 
-Picture = Skin | Section | Fitted | Laid | Served | Probed | Failed
+Picture = Skin | Section | Fitted | Singularities | Laid | Served | Probed | Failed

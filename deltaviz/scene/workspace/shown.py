@@ -19,12 +19,21 @@ from deltaviz.robots.coordinates import is_planar
 from deltaviz.scene.controls import Controls, Judgement
 from deltaviz.scene.workspace import tasks
 from deltaviz.scene.workspace.draw import Drawing
+from deltaviz.scene.workspace.grips import Grips
 from deltaviz.scene.workspace.inputs import Inputs
 from deltaviz.scene.workspace.measures import NAMES, PLAIN
 from deltaviz.scene.workspace.object_shown import Laying, ObjectShown
 from deltaviz.scene.workspace.orders import Send, Topical
-from deltaviz.scene.workspace.pictures import Failed, Fitted, Picture, Section, Skin
+from deltaviz.scene.workspace.pictures import (
+    Failed,
+    Fitted,
+    Picture,
+    Section,
+    Singularities,
+    Skin,
+)
 from deltaviz.scene.workspace.probe_shown import ProbeShown, Probing
+from deltaviz.scene.workspace.singular import Near
 from deltaviz.scene.workspace.text import Told
 
 AXES = "XYZ"
@@ -39,6 +48,7 @@ class Choices:
 
     boundary: bool = False
     fitted: bool = False
+    singular: bool = False
     measure: str = PLAIN
     sections: set[int] = field(default_factory=set[int])
     levels: dict[int, float] = field(default_factory=dict[int, float])
@@ -66,6 +76,9 @@ class WorkspaceShown:
         self._quick, self._patient = quick, patient
         self._refining: asyncio.TimerHandle | None = None
         self._drawing = Drawing(client.scene)
+        self._grips = Grips(client.scene, self._drag_section)
+        self._spans: dict[int, tuple[float, float]] = {}
+        self._awaited: set[int] = set()  # sections of which no picture has come since the order
         self._folder = client.gui.add_folder("Workspace", expand_by_default=False)
         self._handles: list[Handle] = []
         self._sliders: dict[int, GuiSliderHandle[float]] = {}
@@ -96,21 +109,44 @@ class WorkspaceShown:
         match picture:
             case Skin():
                 if self._choices.boundary and not self._is_older(picture):
-                    self._drawing.skin(picture)
-                    self._told.skin = picture
+                    self._take_skin(picture)
             case Section():
-                if picture.axis in self._choices.sections:
-                    self._drawing.section(picture)
-                    self._told.scale = picture.scale
-                    self._fit_slider(picture)
+                self._take_section(picture)
             case Fitted():
                 if self._choices.fitted:
                     self._drawing.fitted(picture)
                     self._told.fitted = picture
+            case Singularities():
+                if self._choices.singular:
+                    self._drawing.singular(picture)
+                    self._told.singular = picture
             case Failed(text):
                 self._told.problem = text
+                self._awaited.clear()
         self._told.waiting.discard(topic)
         self._tell()
+
+    def _take_skin(self, skin: Skin) -> None:
+        if skin.measure != self._choices.measure:
+            self._recolour(skin)
+            return
+        self._drawing.skin(skin)
+        self._told.skin = skin
+        self._told.scale = skin.scale or self._told.scale
+
+    def _take_section(self, section: Section) -> None:
+        axis = section.axis
+        if axis not in self._choices.sections:
+            return
+        self._drawing.section(section)
+        self._told.scale = section.scale or self._told.scale
+        self._spans[axis] = section.span
+        self._fit_slider(section)
+        self._awaited.discard(axis)
+        if axis in self._sliders:
+            self._grips.show(section, level := self._choices.levels[axis])
+            if section.level != level:
+                self._order_section(axis, moving=True)
 
     def _is_older(self, skin: Skin) -> bool:
         """A coarse boundary that comes after a fine one."""
@@ -130,6 +166,7 @@ class WorkspaceShown:
         self._tell()
         self._order_boundary()
         self._order_fitted()
+        self._order_singular()
         self._order_sections()
 
     def _stop(self) -> None:
@@ -143,6 +180,8 @@ class WorkspaceShown:
         self._readout.remove()
         self._handles.clear()
         self._sliders.clear()
+        self._grips.drop(*range(3))
+        self._spans.clear()
 
     def _added_probe(self) -> ProbeShown:
         low, high = roughly(self._robot, 2)
@@ -177,6 +216,7 @@ class WorkspaceShown:
         body = "Largest rectangle" if planar else "Largest cylinder"
         self._add_toggle("Reach", self._choices.boundary, self._set_boundary)
         self._add_toggle(body, self._choices.fitted, self._set_fitted)
+        self._add_toggle("Singularities", self._choices.singular, self._set_singular)
         colour = self._client.gui.add_dropdown(
             "Colours", NAMES, initial_value=self._choices.measure
         )
@@ -194,8 +234,7 @@ class WorkspaceShown:
             self._order_section(axis)
 
         def move(level: float) -> None:
-            self._choices.levels[axis] = level
-            self._order_section(axis)
+            self._move_section(axis, level)
 
         self._add_toggle(name, axis in self._choices.sections, choose)
         if planar:
@@ -240,6 +279,24 @@ class WorkspaceShown:
         if (slider.min, slider.max) != (low, high):
             slider.min, slider.max = low, high
 
+    # Where the sections are.
+
+    def _drag_section(self, axis: int, level: float) -> None:
+        """By its grip, within what the workspace spans; its slider goes along."""
+        low, high = self._spans[axis]
+        level = float(round(min(max(level, low), high)))
+        if level != self._choices.levels[axis]:
+            self._sliders[axis].value = level
+            self._move_section(axis, level)
+
+    def _move_section(self, axis: int, level: float) -> None:
+        """One picture at a time: to order the next breaks off the one before, and a hand that
+        moves on would see none. When it comes, the newest level is ordered."""
+        self._choices.levels[axis] = level
+        self._grips.place(axis, level)
+        if axis not in self._awaited:
+            self._order_section(axis, moving=True)
+
     # What is ordered.
 
     def _set_boundary(self, wanted: bool) -> None:
@@ -253,13 +310,16 @@ class WorkspaceShown:
     def _set_measure(self, name: str) -> None:
         self._choices.measure = name
         self._told.measure = name
+        self._told.scale = None
+        if self._told.skin is not None:
+            self._recolour(self._told.skin)
         self._order_sections()
 
     def _order_boundary(self) -> None:
         self._cancel("boundary")
         self._refined = False
         if self._choices.boundary:
-            self._order(self._quick, "boundary", tasks.Coarse(self._robot))
+            self._order(self._quick, "boundary", tasks.Coarse(self._robot, self._choices.measure))
             loop = asyncio.get_running_loop()
             self._refining = loop.call_later(REST, self._refine)
         else:
@@ -268,7 +328,11 @@ class WorkspaceShown:
         self._tell()
 
     def _refine(self) -> None:
-        self._order(self._patient, "boundary", tasks.Fine(self._robot))
+        self._order(self._patient, "boundary", tasks.Fine(self._robot, self._choices.measure))
+
+    def _recolour(self, skin: Skin) -> None:
+        coloured = tasks.Coloured(self._robot, skin, self._choices.measure)
+        self._order(self._quick, "boundary", coloured)
 
     def _order_fitted(self) -> None:
         self._cancel("fitted")
@@ -278,22 +342,36 @@ class WorkspaceShown:
             self._order(self._patient, "fitted", tasks.Fit(self._robot))
         self._tell()
 
+    def _set_singular(self, wanted: bool) -> None:
+        self._choices.singular = wanted
+        self._order_singular()
+
+    def _order_singular(self) -> None:
+        self._cancel("singular")
+        self._told.singular = None
+        self._drawing.singular(None)
+        if self._choices.singular:
+            self._order(self._patient, "singular", Near(self._robot))
+        self._tell()
+
     def _order_sections(self) -> None:
         self._told.measure = self._choices.measure
         for axis in (1,) if is_planar(self._robot) else range(3):
             self._order_section(axis)
 
-    def _order_section(self, axis: int) -> None:
+    def _order_section(self, axis: int, *, moving: bool = False) -> None:
         name = AXES[axis]
         if axis in self._choices.sections:
             level = 0.0 if is_planar(self._robot) else self._choices.levels[axis]
-            cut = tasks.Cut(self._robot, axis, level, self._choices.measure)
+            pixels = (tasks.DRAFT, tasks.PIXELS) if moving else (tasks.PIXELS,)
+            cut = tasks.Cut(self._robot, axis, level, self._choices.measure, pixels)
             self._order(self._quick, name, cut)
+            self._awaited.add(axis)
         else:
             self._cancel(name)
+            self._awaited.discard(axis)
             self._drawing.no_section(axis)
-            if not self._choices.sections:
-                self._told.scale = None
+            self._grips.drop(axis)
         self._tell()
 
     def _order(self, send: Send, topic: str, task: tasks.Task) -> None:
@@ -302,7 +380,7 @@ class WorkspaceShown:
         send((self._client.client_id, topic), task)
 
     def _cancel_all(self) -> None:
-        for topic in ("boundary", "fitted", *AXES):
+        for topic in ("boundary", "fitted", "singular", *AXES):
             self._cancel(topic)
 
     def _cancel(self, topic: str) -> None:
@@ -314,6 +392,8 @@ class WorkspaceShown:
             send((self._client.client_id, topic), None)
 
     def _tell(self) -> None:
+        if not (self._choices.sections or self._choices.boundary):
+            self._told.scale = None
         content = self._told.html()
         if self._readout.content != content:
             self._readout.content = content

@@ -6,7 +6,7 @@ Runs in the computing processes; takes from some milliseconds (`Coarse`, `Cut`) 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Protocol
 
@@ -18,11 +18,12 @@ from deltaviz.robots.workspace import Boundary, Limit, Margins, levels, quality
 from deltaviz.robots.workspace.cells import Box, hull
 from deltaviz.robots.workspace.empty import why_empty
 from deltaviz.robots.workspace.field import Grid, sample
-from deltaviz.scene.units import Array, metres
-from deltaviz.scene.workspace.measures import PLAIN_COLOUR, coloured, measure_named
+from deltaviz.scene.units import Array, metres, millimetres
+from deltaviz.scene.workspace.measures import PLAIN, PLAIN_COLOUR, Measure, coloured, measure_named
 from deltaviz.scene.workspace.pictures import Fitted, Picture, Section, Skin
 
 PIXELS = 200  # along a section's longest side
+DRAFT = 80  # the same while it is moved
 SAMPLED = 24  # nodes along the longest side that the ends of a colour scale are found from
 ENDS = 2.0, 98.0  # percentiles between which colours are told apart
 FINENESS = 400  # of the longest side, a fine boundary's tolerance
@@ -39,10 +40,11 @@ class Coarse:
     """The boundary at once."""
 
     robot: Robot
+    measure: str = PLAIN
 
     def pictures(self) -> Iterator[Picture]:
         first = next(levels(self.robot))
-        yield _skin(self.robot, first, coarse=True)
+        yield _skin(self.robot, first, self.measure, coarse=True)
 
 
 @dataclass(frozen=True)
@@ -50,31 +52,48 @@ class Fine:
     """The boundary within a tolerance, in two steps."""
 
     robot: Robot
+    measure: str = PLAIN
 
     def pictures(self) -> Iterator[Picture]:
         box = _hull(self.robot)
         tolerance = 1.0 if box is None else max(0.5, float(box.size.max()) / FINENESS)
         for number, boundary in enumerate(levels(self.robot, tolerance=tolerance)):
             if number or box is None:
-                yield _skin(self.robot, boundary, coarse=False)
+                yield _skin(self.robot, boundary, self.measure, coarse=False)
+
+
+@dataclass(frozen=True)
+class Coloured:
+    """A boundary that is there already, coloured by another measure."""
+
+    robot: Robot
+    skin: Skin
+    measure: str
+
+    def pictures(self) -> Iterator[Picture]:
+        yield in_colours(self.robot, self.skin, self.measure)
 
 
 @dataclass(frozen=True)
 class Cut:
-    """A plane across axis 0, 1 or 2 (x, y, z) at `level` mm, coloured by a measure's name."""
+    """A plane across axis 0, 1 or 2 (x, y, z) at `level` mm, coloured by a measure's name; a
+    picture for each number of `pixels` along its longest side."""
 
     robot: Robot
     axis: int
     level: float
     measure: str
+    pixels: tuple[int, ...] = (PIXELS,)
 
     def pictures(self) -> Iterator[Picture]:
         box = _hull(self.robot)
-        if box is None:
-            return
+        if box is not None:
+            yield from (self._drawn(box, pixels) for pixels in self.pixels)
+
+    def _drawn(self, box: Box, pixels: int) -> Section:
         low, high = _in_space(box.low), _in_space(box.high)
         across = [i for i in range(3) if i != self.axis]
-        step = float((high - low)[across].max()) / PIXELS
+        step = float((high - low)[across].max()) / pixels
         sides = [np.arange(low[i] - step, high[i] + 2 * step, step) for i in across]
         rows, columns = np.meshgrid(sides[1], sides[0], indexing="ij")
         points = np.empty((*rows.shape, 3))
@@ -87,7 +106,7 @@ class Cut:
         for i in across:  # a pixel is as wide as the way between two points
             corners[0][i] -= step / 2
             corners[1][i] += step / 2
-        yield Section(
+        return Section(
             axis=self.axis,
             level=self.level,
             image=image,
@@ -146,13 +165,20 @@ def _painted(
     if measure is None:
         image[..., :3] = PLAIN_COLOUR
         return image, None
+    seen = image[..., 3] > 0  # elsewhere the arms may not reach
+    share, scale = _shares(robot, points[seen], measure)
+    image[seen, :3] = coloured(share)
+    return image, scale
+
+
+def _shares(robot: Robot, points: Array, measure: Measure) -> tuple[Array, tuple[float, float]]:
+    """The places of points (n, d) on a measure's scale, (n,) from 0 to 1; and its ends."""
     low, high = _scale(robot, measure.field)
-    values = getattr(quality(robot, points), measure.field)
-    image[..., :3] = coloured((np.nan_to_num(values, nan=low) - low) / (high - low))
-    return image, (low, high)
+    values = np.nan_to_num(getattr(quality(robot, points), measure.field), nan=low)
+    return np.clip((values - low) / (high - low), 0.0, 1.0), (low, high)
 
 
-def _skin(robot: Robot, boundary: Boundary, *, coarse: bool) -> Skin:
+def _skin(robot: Robot, boundary: Boundary, name: str, *, coarse: bool) -> Skin:
     vertices = _in_space(boundary.vertices)
     faces, edges = boundary.faces, np.empty((0, 2, 3))
     if boundary.dimensions == 2:
@@ -161,7 +187,7 @@ def _skin(robot: Robot, boundary: Boundary, *, coarse: bool) -> Skin:
     reason = None
     if not len(faces):
         reason = why_empty(robot, Limit.MACHINE) or "Nothing within reach was found."
-    return Skin(
+    skin = Skin(
         vertices=metres(vertices).astype(np.float32),
         faces=faces.astype(np.uint32),
         edges=metres(edges).astype(np.float32),
@@ -169,6 +195,16 @@ def _skin(robot: Robot, boundary: Boundary, *, coarse: bool) -> Skin:
         deviation=None if coarse else boundary.deviation,
         reason=reason,
     )
+    return in_colours(robot, skin, name)
+
+
+def in_colours(robot: Robot, skin: Skin, name: str) -> Skin:
+    """The boundary as a measure colours it; in a plane sections show measures, no boundary."""
+    measure = measure_named(name)
+    if measure is None or not len(skin.faces) or len(skin.edges):
+        return replace(skin, measure=name, share=None, scale=None)
+    share, scale = _shares(robot, millimetres(skin.vertices), measure)
+    return replace(skin, measure=name, share=share.astype(np.float32), scale=scale)
 
 
 def _filled(robot: Robot, outline: Array) -> NDArray[np.int32]:

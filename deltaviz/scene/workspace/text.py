@@ -3,12 +3,25 @@
 from __future__ import annotations
 
 import html
+import math
 from dataclasses import dataclass, field
 
+from deltaviz.scene import colours
 from deltaviz.scene.workspace.measures import PLAIN, css_gradient, measure_named
-from deltaviz.scene.workspace.pictures import Fitted, Skin
+from deltaviz.scene.workspace.pictures import Fitted, Singularities, Skin, Surface
 
-_NAMES = {"boundary": "the reach", "fitted": "the largest body", "X": "", "Y": "", "Z": ""}
+_NAMES = {
+    "boundary": "the reach",
+    "fitted": "the largest body",
+    "singular": "the singularities",
+    "X": "",
+    "Y": "",
+    "Z": "",
+}
+_KINDS = (
+    ("Type 1", "an arm straight or folded: the end of what the arms reach"),
+    ("Type 2", "the forearms hold the effector no more"),
+)
 
 
 @dataclass
@@ -19,13 +32,15 @@ class Told:
     measure: str = PLAIN
     skin: Skin | None = None
     fitted: Fitted | None = None
+    singular: Singularities | None = None
     scale: tuple[float, float] | None = None
     problem: str | None = None
     waiting: set[str] = field(default_factory=set[str])
 
     def html(self) -> str:
         lines = [html.escape(line) for line in self.lines()]
-        body = "".join(f"<div>{line}</div>" for line in lines) + self._key()
+        body = "".join(f"<div>{line}</div>" for line in lines)
+        body += self._singular() + self._key()
         return (
             "<div style='font-size:12px;line-height:1.4;padding:4px 8px;"
             f"font-variant-numeric:tabular-nums'>{body}</div>"
@@ -56,6 +71,16 @@ class Told:
             return f"No {name} fits."
         return f"Largest {fitted.shape}."
 
+    def _singular(self) -> str:
+        if self.singular is None:
+            return ""
+        lines: list[str] = []
+        surfaces = (self.singular.type_1, self.singular.type_2)
+        for (name, what), surface, colour in zip(_KINDS, surfaces, colours.SINGULAR, strict=True):
+            dot = f"<span style='color:rgb{colour}'>■</span> "
+            lines.append(f"<div>{dot}{name} ({what}): {how_near(surface)}</div>")
+        return "".join(lines)
+
     def _key(self) -> str:
         measure = measure_named(self.measure)
         if measure is None or self.scale is None:
@@ -68,3 +93,13 @@ class Told:
             "<div style='display:flex;justify-content:space-between'>"
             f"<span>{low}</span><span>{high}</span></div>"
         )
+
+
+def how_near(surface: Surface | None) -> str:
+    if surface is None:
+        return "there is no workspace to come near to."
+    if surface.distance is None:
+        return f"none within {surface.near:.0f} mm of the workspace."
+    if surface.distance == 0.0:
+        return "goes through the workspace."
+    return f"comes to within {math.ceil(surface.distance)} mm of the workspace."
