@@ -165,6 +165,7 @@ class WorkspaceShown:
         self._sliders.clear()
         self._grips.drop(*range(3))
         self._spans.clear()
+        self._awaited.clear()
 
     # The panel's inputs.
 
