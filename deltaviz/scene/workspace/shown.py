@@ -182,6 +182,7 @@ class WorkspaceShown:
         self._sliders.clear()
         self._grips.drop(*range(3))
         self._spans.clear()
+        self._awaited.clear()
 
     def _added_probe(self) -> ProbeShown:
         low, high = roughly(self._robot, 2)

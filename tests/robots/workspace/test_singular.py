@@ -7,6 +7,7 @@ of one arm, of type 2 where a direction of P changes F of none.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from deltaviz.robots import Robot, load_robot
 from deltaviz.robots.workspace.singular import Kind, Singular, singular
 
 STEP = 1e-4
+Judge = Callable[[RotaryDelta, np.ndarray, np.ndarray], np.ndarray]
 
 
 @pytest.fixture(scope="module")
@@ -60,11 +62,10 @@ def turning(mechanism: RotaryDelta, points: np.ndarray, theta: np.ndarray) -> np
 
 @pytest.mark.parametrize(("kind", "judge"), [(Kind.TYPE_1, turning), (Kind.TYPE_2, flatness)])
 def test_control_is_lost_on_the_surfaces_and_not_in_the_workspace(
-    robot: Robot, surfaces: dict[Kind, Singular], kind: Kind, judge: object
+    robot: Robot, surfaces: dict[Kind, Singular], kind: Kind, judge: Judge
 ) -> None:
     mechanism = robot.mechanism
     assert isinstance(mechanism, RotaryDelta)
-    assert callable(judge)
     where = surfaces[kind].vertices
     inside = np.array([(0.0, 0.0, -330.0), (60.0, -40.0, -300.0)])
     for points, is_lost in ((where, True), (inside, False)):
