@@ -111,9 +111,9 @@ def test_another_browser_s_click_probes_nothing_here(stand: Any, viewer: Any, vi
 def test_a_table_follows_its_sliders(stand: Any, viewer: Any) -> None:
     choose(viewer, "Object", "Table")
     viewer.read(told("Table 300 by 200 mm"), LONG)
-    choose(viewer, "Width mm", 460.0)
+    choose(viewer, "mm wide", 460.0)
     viewer.read(told("Table 460 by 200 mm"), LONG)
-    choose(viewer, "Object Z mm", -390.0)
+    choose(viewer, "mm at Z", -390.0)
     viewer.read(drawn("/reach/object"), LONG)
     viewer.read(told("at Z -390 mm: does not fit"), LONG)
 
@@ -124,7 +124,7 @@ def test_another_robot_has_no_point_and_its_own_height(
     viewer = watching(own_stand, visit_own)
     choose(viewer, "Object", "A4 paper")
     viewer.read(told("A4 paper at Z"), LONG)
-    choose(viewer, "Object Z mm", -390.0)
+    choose(viewer, "mm at Z", -390.0)
     viewer.read(told("at Z -390 mm"), LONG)
     choose(viewer, "Probe", True)
     choose(viewer, "Point", "0 0 -300")

@@ -57,9 +57,9 @@ class ObjectShown:
         inputs.choice("Object", [kind.value for kind in Kind], choices.kind.value, self._set_kind)
         middle = float(round(sum(heights) / 2))
         level = middle if choices.level is None else choices.level
-        self._level = inputs.slider("Object Z mm", heights, level, self._set_level)
-        self._width = inputs.slider("Width mm", SIZES, choices.width, self._set_width, step=10.0)
-        self._depth = inputs.slider("Depth mm", SIZES, choices.depth, self._set_depth, step=10.0)
+        self._level = inputs.slider("mm at Z", heights, level, self._set_level)
+        self._width = inputs.slider("mm wide", SIZES, choices.width, self._set_width, step=10.0)
+        self._depth = inputs.slider("mm deep", SIZES, choices.depth, self._set_depth, step=10.0)
         self._readout: viser.GuiHtmlHandle = inputs.readout()
         self._order()
 
