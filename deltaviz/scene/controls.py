@@ -7,7 +7,7 @@ from collections import deque
 from collections.abc import Callable
 from enum import Enum, auto
 
-from viser import GuiCheckboxHandle, GuiDropdownHandle, GuiSliderHandle
+from viser import GuiButtonHandle, GuiCheckboxHandle, GuiDropdownHandle, GuiSliderHandle
 
 from deltaviz.scene.inner import uuid_of
 
@@ -15,7 +15,7 @@ _RETIRED_KEPT = 256
 
 
 class Judgement(Enum):
-    STEERS = auto()  # moves the robot: for the session in control
+    STEERS = auto()  # moves the robot or writes a file: for the session in control
     SHOWS = auto()  # changes a picture only: for anyone
     STALE = auto()  # of an input that is gone: to be dropped
     REFUSED = auto()  # nothing that our page sends
@@ -53,8 +53,15 @@ class Controls:
             lambda value: isinstance(value, str) and value in handle.options,
         )
 
+    def add_button(self, handle: GuiButtonHandle, judgement: Judgement) -> None:
+        self._inputs[uuid_of(handle)] = (judgement, lambda value: value is True)
+
     def retire(
-        self, handle: GuiSliderHandle[float] | GuiCheckboxHandle | GuiDropdownHandle[str]
+        self,
+        handle: GuiSliderHandle[float]
+        | GuiCheckboxHandle
+        | GuiDropdownHandle[str]
+        | GuiButtonHandle,
     ) -> None:
         """The input was removed; what is still on the way for it is harmless."""
         if self._inputs.pop(uuid_of(handle), None) is not None:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Page
+from playwright.sync_api import Browser, BrowserContext, Locator, Page
 from websockets.sync.server import serve
 
 from deltaviz.machine.intent import DragEnd, DragStart, DragTo, FollowAngles
@@ -187,6 +187,36 @@ def test_the_workspace_is_shown_and_cut_and_nothing_moves(page: Page, stand: Any
     moved = other_than(cut, page)
     assert len({bare, with_boundary, cut, moved}) == 4
     assert stand.machine.posted == []
+
+
+def test_a_length_is_dragged_and_the_reach_follows_and_nothing_moves(
+    page: Page, stand: Any
+) -> None:
+    for folder in ("Angles", "Position", "Workspace", "Geometry"):
+        page.get_by_text(folder, exact=True).click()
+    row = page.locator(".mantine-Flex-root:has(> div label)", has_text="Forearm").last
+    thumb = row.get_by_role("slider")
+    x, y = at_a_standstill(thumb)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 12, y, steps=6)
+    page.get_by_text("more than stm32").wait_for()  # while it is held
+    page.mouse.move(x - 12, y, steps=6)
+    page.get_by_text("less than stm32").wait_for()
+    page.mouse.up()
+    page.get_by_text("drawn within").wait_for()
+    assert stand.machine.posted == []
+
+
+def at_a_standstill(thing: Locator) -> tuple[float, float]:
+    """The middle of what has stopped to slide, scrolled into view."""
+    before = None
+    while True:
+        thing.scroll_into_view_if_needed()
+        if (box := thing.bounding_box()) is not None and box == before:
+            return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+        before = box
+        thing.page.wait_for_timeout(100)
 
 
 def test_a_browser_that_goes_ends_its_drag(page: Page, stand: Any) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import trimesh
 import viser
+from numpy.typing import NDArray
 from PIL import Image
 from trimesh.visual.material import PBRMaterial
 from trimesh.visual.texture import TextureVisuals
@@ -12,13 +13,14 @@ from trimesh.visual.texture import TextureVisuals
 from deltaviz.robots.workspace.shapes import Cuboid
 from deltaviz.scene import colours, shapes
 from deltaviz.scene.shapes import Shape
-from deltaviz.scene.units import metres
+from deltaviz.scene.units import Array, metres
 from deltaviz.scene.workspace.pictures import Fitted, Section, Skin
 
 BOUNDARY, OUTLINE, FITTED = "/reach/boundary", "/reach/outline", "/reach/fitted"
+DESIGN = "/reach/design"
 SECTIONS = tuple(f"/reach/section_{axis}" for axis in "xyz")
 
-_OPACITY = 0.22
+_OPACITY, _PALE = 0.22, 0.08
 _THIN = 0.002  # m, how thick a rectangle is drawn
 
 
@@ -36,15 +38,22 @@ class Drawing:
         self._skin = skin
         self._fill()
         if len(skin.edges):
-            self._nodes[OUTLINE] = self._scene.add_line_segments(
-                OUTLINE,
-                points=skin.edges,
-                colors=colours.REACH,
-                thickness=2.0,
-                thickness_units="screen",
-            )
+            self._lines(OUTLINE, skin.edges, colours.REACH)
         else:
             self._drop(OUTLINE)
+
+    def fade(self, pale: bool) -> None:
+        """The boundary of what is not any more what was asked for."""
+        boundary = self._nodes.get(BOUNDARY)
+        if isinstance(boundary, viser.MeshHandle):
+            boundary.opacity = _PALE if pale else _OPACITY
+
+    def design(self, segments: Array | None) -> None:
+        """(k, 2, 3): the arms of a robot that is not there."""
+        if segments is None:
+            self._drop(DESIGN)
+        else:
+            self._lines(DESIGN, segments, colours.DESIGN)
 
     def section(self, section: Section) -> None:
         self._fill(covered=True)
@@ -87,6 +96,11 @@ class Drawing:
         elif not covered:
             shape = Shape(self._skin.vertices, self._skin.faces)
             self._mesh(BOUNDARY, shape, colours.REACH, _OPACITY)
+
+    def _lines(self, name: str, segments: NDArray[np.floating], colour: colours.Colour) -> None:
+        self._nodes[name] = self._scene.add_line_segments(
+            name, points=segments, colors=colour, thickness=2.0, thickness_units="screen"
+        )
 
     def _mesh(self, name: str, shape: Shape, colour: colours.Colour, opacity: float) -> None:
         self._nodes[name] = self._scene.add_mesh_simple(

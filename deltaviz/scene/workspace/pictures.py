@@ -43,6 +43,13 @@ class Section:
 
 
 @dataclass(frozen=True)
+class NoSection:
+    """Nothing across `axis`: the workspace is empty."""
+
+    axis: int
+
+
+@dataclass(frozen=True)
 class Fitted:
     """The largest upright cylinder about the vertical line through the origin (in a plane, the
     largest rectangle); None if nothing fits."""
@@ -57,4 +64,4 @@ class Failed:
     text: str
 
 
-Picture = Skin | Section | Fitted | Failed
+Picture = Skin | Section | NoSection | Fitted | Failed

@@ -18,9 +18,10 @@ from deltaviz.robots.workspace import Boundary, Limit, Margins, levels, quality
 from deltaviz.robots.workspace.cells import Box, hull
 from deltaviz.robots.workspace.empty import why_empty
 from deltaviz.robots.workspace.field import Grid, sample
+from deltaviz.robots.workspace.levels import rough
 from deltaviz.scene.units import Array, metres
 from deltaviz.scene.workspace.measures import PLAIN_COLOUR, coloured, measure_named
-from deltaviz.scene.workspace.pictures import Fitted, Picture, Section, Skin
+from deltaviz.scene.workspace.pictures import Fitted, NoSection, Picture, Section, Skin
 
 PIXELS = 200  # along a section's longest side
 SAMPLED = 24  # nodes along the longest side that the ends of a colour scale are found from
@@ -43,6 +44,16 @@ class Coarse:
     def pictures(self) -> Iterator[Picture]:
         first = next(levels(self.robot))
         yield _skin(self.robot, first, coarse=True)
+
+
+@dataclass(frozen=True)
+class Rough:
+    """The boundary at a moving hand's pace."""
+
+    robot: Robot
+
+    def pictures(self) -> Iterator[Picture]:
+        yield _skin(self.robot, rough(self.robot), coarse=True)
 
 
 @dataclass(frozen=True)
@@ -71,6 +82,7 @@ class Cut:
     def pictures(self) -> Iterator[Picture]:
         box = _hull(self.robot)
         if box is None:
+            yield NoSection(self.axis)
             return
         low, high = _in_space(box.low), _in_space(box.high)
         across = [i for i in range(3) if i != self.axis]

@@ -5,10 +5,13 @@ from __future__ import annotations
 import html
 from dataclasses import dataclass, field
 
+from deltaviz.scene.workspace.compared import OwnSize, size_told
 from deltaviz.scene.workspace.measures import PLAIN, css_gradient, measure_named
 from deltaviz.scene.workspace.pictures import Fitted, Skin
 
-_NAMES = {"boundary": "the reach", "fitted": "the largest body", "X": "", "Y": "", "Z": ""}
+_NAMES = {"boundary": "the reach", "refined": "the reach", "fitted": "the largest body"}
+
+_LINES = 3  # always there, so that what is below does not jump
 
 
 @dataclass
@@ -21,6 +24,7 @@ class Told:
     fitted: Fitted | None = None
     scale: tuple[float, float] | None = None
     problem: str | None = None
+    own: OwnSize | None = None  # what the reach is compared with
     waiting: set[str] = field(default_factory=set[str])
 
     def html(self) -> str:
@@ -28,6 +32,7 @@ class Told:
         body = "".join(f"<div>{line}</div>" for line in lines) + self._key()
         return (
             "<div style='font-size:12px;line-height:1.4;padding:4px 8px;"
+            f"min-height:calc({_LINES} * 1.4em + 8px);"
             f"font-variant-numeric:tabular-nums'>{body}</div>"
         )
 
@@ -37,7 +42,8 @@ class Told:
             lines.append(self._reach(self.skin))
         if self.fitted is not None:
             lines.append(self._fitted(self.fitted))
-        named = sorted({_NAMES[topic] for topic in self.waiting} - {""})
+        waiting = self.waiting - ({"boundary"} if self.skin is not None else set())
+        named = sorted({_NAMES[topic] for topic in waiting if topic in _NAMES})
         if named:
             lines.append(f"Computing {' and '.join(named)} …")
         return lines
@@ -45,7 +51,9 @@ class Told:
     def _reach(self, skin: Skin) -> str:
         if skin.reason is not None:
             return f"The workspace is empty. {skin.reason}"
-        size = f"{skin.size / 100:.4g} cm²" if self.planar else f"{skin.size / 1e6:.3g} l"
+        size = size_told(skin.size, planar=self.planar)
+        if self.own is not None and (compared := self.own.against(skin)):
+            size = f"{size} ({compared})"
         if skin.deviation is None:
             return f"Reach: about {size}, drawn coarsely."
         return f"Reach: {size}, drawn within {max(skin.deviation, 0.1):.1f} mm."
