@@ -21,6 +21,10 @@ BENCHMARKS = {
         ["kinematics", "--rounds", "40"],
     ),
     "workspace": ("The workspace: field, boundary, what fits", ["workspace"]),
+    "geometry": (
+        "Live editing: boundaries drawn anew while a length is dragged",
+        ["geometry", "--seconds", "10"],
+    ),
     "follower": ("One tick of the follower", ["follower", "--ticks", "200"]),
     "loop": ("The control loop, alone and on busy cores", ["loop", "--seconds", "5"]),
     "watched_loop": ("The control loop while browsers watch", ["watched_loop", "--seconds", "5"]),

@@ -35,7 +35,8 @@ from deltaviz.machine.wire import (
     Setup,
     StatsRequest,
 )
-from deltaviz.robots import Robot, load_robot, preset_names
+from deltaviz.robots import Robot, preset_names
+from deltaviz.robots.load import Loaded, load_with_text
 
 ENDED = "The machine's process has ended. Start deltaviz again."
 
@@ -44,11 +45,11 @@ class MachineClient:
     """Starts and ends the machine's process, and implements MachinePort."""
 
     def __init__(self, process: subprocess.Popen[bytes], *, stops: socket.socket,
-                 talk: socket.socket, setup: Setup, robot: Robot) -> None:  # fmt: skip
+                 talk: socket.socket, setup: Setup, loaded: Loaded) -> None:  # fmt: skip
         self._process = process
         self._stop_socket, self._talk_socket = stops, talk
         self._setup = setup
-        self._robot = robot
+        self._loaded = loaded
         self._links = Links(setup.link)
         self._lock = threading.Lock()
         self._stops = FrameWriter(stops)
@@ -58,7 +59,7 @@ class MachineClient:
         self._waiting: dict[int, Future[i.Answer] | Future[LoopStats]] = {}
         self._problem: str | None = None
         self._closing = False
-        self._snapshot = _starting(setup.robot, robot, link=self._links.given.id)
+        self._snapshot = _starting(setup.robot, loaded.robot, link=self._links.given.id)
         self._first = threading.Event()
         self._wake, self._woken = socket.socketpair()
         self._wake.setblocking(False)
@@ -80,16 +81,16 @@ class MachineClient:
         check_link(link)
         if capture is not None:
             check_capture(capture)
-        loaded = load_robot(robot)
+        loaded = load_with_text(robot)
         robots = {name: name for name in preset_names()}
-        robot_id = robot if robot in robots else loaded.name
+        robot_id = robot if robot in robots else loaded.robot.name
         robots[robot_id] = robot if robot in robots else str(Path(robot).resolve())
         setup = Setup(robot_id, robots, link, None if capture is None else str(capture.resolve()))
         stops, their_stops = socket.socketpair()
         talk, their_talk = socket.socketpair()
         with their_stops, their_talk:
             process = _spawn(their_stops, their_talk)
-        return cls(process, stops=stops, talk=talk, setup=setup, robot=loaded)
+        return cls(process, stops=stops, talk=talk, setup=setup, loaded=loaded)
 
     # MachinePort.
 
@@ -99,7 +100,11 @@ class MachineClient:
 
     @property
     def robot(self) -> Robot:
-        return self._robot
+        return self._loaded.robot
+
+    @property
+    def loaded(self) -> Loaded:
+        return self._loaded
 
     def links(self) -> tuple[Link, ...]:
         return self._links.list()
@@ -219,7 +224,7 @@ class MachineClient:
                 )
             case Snapshot():
                 if value.robot != self._snapshot.robot:
-                    self._robot = load_robot(self._setup.robots[value.robot])
+                    self._loaded = load_with_text(self._setup.robots[value.robot])
                 self._snapshot = value
                 if value.link.connected or value.link.problem is not None:
                     self._first.set()
@@ -231,7 +236,7 @@ class MachineClient:
             waiting = list(self._waiting.values())
             self._waiting.clear()
         self._snapshot = replace(
-            _starting(self._snapshot.robot, self._robot, link=self._snapshot.link.id),
+            _starting(self._snapshot.robot, self._loaded.robot, link=self._snapshot.link.id),
             link=LinkStatus(self._snapshot.link.id, LinkPhase.CLOSED, problem=problem),
             stop_reason=self._snapshot.stop_reason,
             override=self._snapshot.override,

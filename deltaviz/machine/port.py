@@ -9,6 +9,7 @@ from deltaviz.link.links import Link
 from deltaviz.machine.intent import Answer, Intent
 from deltaviz.machine.snapshot import Snapshot
 from deltaviz.robots import Robot
+from deltaviz.robots.load import Loaded
 
 
 class MachinePort(Protocol):
@@ -22,6 +23,11 @@ class MachinePort(Protocol):
     @property
     def robot(self) -> Robot:
         """The robot that the controller drives now."""
+        ...
+
+    @property
+    def loaded(self) -> Loaded:
+        """`robot` with the text of its file."""
         ...
 
     def links(self) -> tuple[Link, ...]:

@@ -15,3 +15,12 @@ class Inconsistent(ValueError):
         self.field = field
         self.value = value
         self.rule = rule
+
+
+class Faulty(ValueError):
+    """The numbers of a robot file that make no robot; the text is that of its first problem."""
+
+    def __init__(self, problems: list[tuple[str, str]]) -> None:
+        super().__init__(problems[0][1])
+        self.problems = problems
+        """(field, what is wrong with it) of each."""

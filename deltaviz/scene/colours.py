@@ -13,6 +13,7 @@ EFFECTOR: Colour = (46, 134, 214)
 GHOST: Colour = (64, 156, 236)
 TRAIL: Colour = (46, 160, 190)
 REACH: Colour = (72, 148, 214)
+DESIGN: Colour = (150, 112, 222)
 FITTED: Colour = (236, 150, 62)
 PROBE: Colour = (206, 40, 132)
 SINGULAR: tuple[Colour, Colour] = ((152, 92, 214), (222, 66, 66))  # of type 1, of type 2

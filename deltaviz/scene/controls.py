@@ -7,18 +7,30 @@ from collections import deque
 from collections.abc import Callable
 from enum import Enum, auto
 
-from viser import GuiCheckboxHandle, GuiDropdownHandle, GuiSliderHandle, GuiTextHandle
+from viser import (
+    GuiButtonHandle,
+    GuiCheckboxHandle,
+    GuiDropdownHandle,
+    GuiSliderHandle,
+    GuiTextHandle,
+)
 
 from deltaviz.scene.inner import uuid_of
 
 _RETIRED_KEPT = 256
 LONGEST_TEXT = 80
 
-Handle = GuiSliderHandle[float] | GuiCheckboxHandle | GuiDropdownHandle[str] | GuiTextHandle
+Handle = (
+    GuiSliderHandle[float]
+    | GuiCheckboxHandle
+    | GuiDropdownHandle[str]
+    | GuiTextHandle
+    | GuiButtonHandle
+)
 
 
 class Judgement(Enum):
-    STEERS = auto()  # moves the robot: for the session in control
+    STEERS = auto()  # moves the robot or writes a file: for the session in control
     SHOWS = auto()  # changes a picture only: for anyone
     STALE = auto()  # of an input that is gone: to be dropped
     REFUSED = auto()  # nothing that our page sends
@@ -66,6 +78,9 @@ class Controls:
             Judgement.SHOWS,
             lambda value: isinstance(value, str) and len(value) <= LONGEST_TEXT,
         )
+
+    def add_button(self, handle: GuiButtonHandle, judgement: Judgement) -> None:
+        self._inputs[uuid_of(handle)] = (judgement, lambda value: value is True)
 
     def retire(self, handle: Handle) -> None:
         """The input was removed; what is still on the way for it is harmless."""

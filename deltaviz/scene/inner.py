@@ -12,10 +12,10 @@ from typing import Any
 
 import viser
 import viser._messages as messages
-from viser import ClientHandle, GuiInputHandle
+from viser import ClientHandle, GuiButtonHandle, GuiInputHandle
 
 
-def uuid_of(handle: GuiInputHandle[Any]) -> str:
+def uuid_of(handle: GuiInputHandle[Any] | GuiButtonHandle) -> str:
     """The name by which a browser speaks of an input."""
     return handle._impl.uuid
 

@@ -19,8 +19,8 @@ from viser import ClientHandle
 from deltaviz.machine.intent import Answer, Intent, Refused
 from deltaviz.machine.port import MachinePort
 from deltaviz.machine.snapshot import Snapshot
-from deltaviz.robots import Robot
 from deltaviz.robots.coordinates import in_space
+from deltaviz.robots.load import Loaded
 from deltaviz.scene.controls import Controls
 from deltaviz.scene.drag import Dragging, eye_of
 from deltaviz.scene.gateway import Gate, make_router
@@ -132,16 +132,17 @@ class Scene:
         self._panel = Panel(server, self._controls, self._machine.robot, self._post)
         self._stage = Stage(server)
         self._trail = Trail(server.scene)
-        self._draw(self._machine.robot)
+        self._draw(self._machine.loaded)
         server.on_client_connect(self._on_connect)
         server.on_client_disconnect(self._on_disconnect)
 
-    def _draw(self, robot: Robot) -> None:
+    def _draw(self, loaded: Loaded) -> None:
+        robot = loaded.robot
         with self._server.atomic():
             model: RobotModel = draw(self._server.scene, robot)
             model.effector.on_drag("left")(self._dragging.on_plane)
             model.effector.on_drag("left", modifier="shift")(self._dragging.on_vertical)
-            self._robot, self._model = robot, model
+            self._loaded, self._robot, self._model = loaded, robot, model
             self._stage.fit(robot, model)
             self._trail.start(0.018 * model.thickness)
             self._controls.draggable = frozenset((model.effector.name, HANDLE))
@@ -149,7 +150,7 @@ class Scene:
             self._show(self._machine.snapshot)
         for viewer in self._viewers.values():
             viewer.hold(model)
-            viewer.reach.set_robot(robot)
+            viewer.reach.set_robot(loaded)
 
     async def _follow(self) -> None:
         """Show the newest snapshot, 60 times a second; poses are shown, never guessed."""
@@ -165,11 +166,12 @@ class Scene:
 
     def _frame(self) -> None:
         snapshot = self._machine.snapshot
-        robot = self._machine.robot
+        loaded = self._machine.loaded
+        robot = loaded.robot
         if robot is not self._robot and robot != self._robot:
             self._panel.set_robot(robot)  # first, as drawing tells who may use its sliders
             self._model.remove()
-            self._draw(robot)
+            self._draw(loaded)
         self._frames += 1
         if snapshot is not self._shown and self._fits(snapshot):
             with self._server.atomic():
@@ -222,7 +224,7 @@ class Scene:
             panel=self._panel,
             controls=self._controls,
             dragging=self._dragging,
-            robot=self._robot,
+            loaded=self._loaded,
             quick=self._quick.order,
             patient=self._patient.order,
         )

@@ -11,7 +11,7 @@ import numpy as np
 import viser
 from viser import ClientHandle, GuiCheckboxHandle, GuiEvent
 
-from deltaviz.robots import Robot
+from deltaviz.robots.load import Loaded
 from deltaviz.scene import colours, inner
 from deltaviz.scene.controls import Controls
 from deltaviz.scene.drag import BINDINGS, Dragging
@@ -65,7 +65,7 @@ class Viewer:
         panel: Panel,
         controls: Controls,
         dragging: Dragging,
-        robot: Robot,
+        loaded: Loaded,
         quick: Send,
         patient: Send,
     ) -> None:
@@ -81,7 +81,7 @@ class Viewer:
         self._handle_scale = 1.0
         self._toggles = self._add_toggles()
         self.reach = WorkspaceShown(
-            client, controls, display.reach, robot, quick=quick, patient=patient
+            client, controls, display.reach, loaded, quick=quick, patient=patient
         )
         self._note = client.gui.add_html("", visible=False, order=-1.0)
         self.apply_theme()
@@ -162,6 +162,7 @@ class Viewer:
         inner.set_draggable(self.client, model.effector, BINDINGS if may_steer else ())
         if self._handle is not None:
             self._handle.visible = may_steer
+        self.reach.set_steering(may_steer)
 
     def _add_toggles(self) -> list[GuiCheckboxHandle]:
         toggles: list[GuiCheckboxHandle] = []

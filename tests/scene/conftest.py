@@ -36,8 +36,10 @@ from deltaviz.machine.intent import (
 from deltaviz.machine.mode import Mode
 from deltaviz.machine.snapshot import LinkPhase, LinkStatus, Snapshot
 from deltaviz.mechanism import RotaryDelta
-from deltaviz.robots import Robot, load_robot
+from deltaviz.robots import Robot, load_robot, preset_names
 from deltaviz.robots.coordinates import in_robot
+from deltaviz.robots.load import Loaded
+from deltaviz.robots.presets import preset_text
 from deltaviz.scene.listener import open_listener
 from deltaviz.scene.view import Scene
 
@@ -46,11 +48,11 @@ class FakeMachine:
     """Takes every intent (or refuses every one) and is at once where it was told to be."""
 
     def __init__(self, robot: Robot) -> None:
-        self._first = robot
+        self._first = self._loaded_of(robot)
         self.begin_anew()
 
     def begin_anew(self) -> None:
-        self.robot = self._first
+        self.loaded = self._first
         self.posted: list[Intent] = []
         self.refusal: str | None = None
         self.holder: str | None = None
@@ -99,8 +101,18 @@ class FakeMachine:
         self.holder = holder
         self.snapshot = dataclasses.replace(self.snapshot, holder=holder)
 
+    @property
+    def robot(self) -> Robot:
+        return self.loaded.robot
+
+    @staticmethod
+    def _loaded_of(robot: Robot) -> Loaded:
+        """Of a robot that no file describes, with that of a preset."""
+        known = robot.name if robot.name in preset_names() else "stm32"
+        return Loaded(robot, preset_text(known))
+
     def become(self, robot: Robot) -> None:
-        self.robot = robot
+        self.loaded = self._loaded_of(robot)
         self.be_at(self.middle)
 
     def of(self, kind: type) -> list[Any]:
@@ -199,9 +211,7 @@ class Visitor:
                     return message
             data = self.socket.recv(timeout=max(deadline - time.monotonic(), 0.0))
             assert isinstance(data, bytes)
-            size = int.from_bytes(data[8:16], "little")
-            plain = zstandard.ZstdDecompressor().decompress(data[16 : 16 + size])
-            self.seen += (messages := msgspec.msgpack.decode(plain)["messages"])
+            self.seen += (messages := spoken(data))
             for message in messages:
                 if label := message.get("props", {}).get("label"):
                     self.inputs[label] = message["uuid"]
@@ -223,6 +233,23 @@ class Visitor:
         except Exception:
             code, reason = self.socket.protocol.close_code, self.socket.protocol.close_reason
             return code or 0, reason or ""
+
+
+def spoken(data: bytes) -> list[dict[str, Any]]:
+    """The messages in one of viser's frames; meshes have their arrays, of one dimension."""
+    end = 16 + int.from_bytes(data[8:16], "little")
+    plain = zstandard.ZstdDecompressor().decompress(data[16:end])
+    content = msgspec.msgpack.decode(plain)
+    buffers: list[bytes] = []
+    for length in content["binaryBufferLengths"]:
+        start = -(-end // 8) * 8
+        buffers.append(data[start : (end := start + length)])
+    for message in content["messages"]:
+        props = message.get("props", {})
+        for name, value in props.items():
+            if isinstance(value, dict) and "__binary_index" in value:
+                props[name] = np.frombuffer(buffers[value["__binary_index"]], value["dtype"])
+    return content["messages"]
 
 
 CAMERA: dict[str, Any] = {

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Page
+from playwright.sync_api import Browser, BrowserContext, Locator, Page
 from websockets.sync.server import serve
 
 from deltaviz.machine.intent import DragEnd, DragStart, DragTo, FollowAngles
@@ -284,6 +284,36 @@ def test_a_section_is_dragged_along_its_axis_and_the_robot_stays(page: Page, sta
     page.mouse.up()
     stand.eventually(lambda: not np.allclose(the_client(stand).camera.position, eye, atol=1e-3))
     assert stand.machine.posted == []
+
+
+def test_a_length_is_dragged_and_the_reach_follows_and_nothing_moves(
+    page: Page, stand: Any
+) -> None:
+    for folder in ("Angles", "Position", "Workspace", "Geometry"):
+        page.mouse.click(*at_a_standstill(page.get_by_text(folder, exact=True)))
+    row = page.locator(".mantine-Flex-root:has(> div label)", has_text="Forearm").last
+    thumb = row.get_by_role("slider")
+    x, y = at_a_standstill(thumb)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 12, y, steps=6)
+    page.get_by_text("more than stm32").wait_for()  # while it is held
+    page.mouse.move(x - 12, y, steps=6)
+    page.get_by_text("less than stm32").wait_for()
+    page.mouse.up()
+    page.get_by_text("drawn within").wait_for()
+    assert stand.machine.posted == []
+
+
+def at_a_standstill(thing: Locator) -> tuple[float, float]:
+    """The middle of what has stopped to slide, scrolled into view."""
+    before = None
+    while True:
+        thing.scroll_into_view_if_needed()
+        if (box := thing.bounding_box()) is not None and box == before:
+            return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+        before = box
+        thing.page.wait_for_timeout(100)
 
 
 def test_a_browser_that_goes_ends_its_drag(page: Page, stand: Any) -> None:

@@ -13,6 +13,7 @@ import pytest
 from deltaviz.machine.intent import FollowAngles, FollowPoint
 from deltaviz.robots import Robot
 from deltaviz.robots.coordinates import in_space
+from deltaviz.robots.load import Loaded
 from deltaviz.scene import colours, framing
 from deltaviz.scene.stage import outline
 from deltaviz.scene.trail import SEGMENTS, TrailPoints
@@ -102,11 +103,11 @@ def test_the_sliders_take_the_range_of_another_robot(
 
 
 def labels_after(visitor: Any, stand: Any, robot: Robot, last: str) -> list[str]:
-    """The sliders' labels, in their order, that come with another robot."""
+    """The labels, in their order, of the target's sliders that come with another robot."""
     visitor.inputs.clear()
     stand.machine.become(robot)
     visitor.input(last)
-    return [label for label in visitor.inputs if label.endswith(("°", "mm"))]
+    return [label for label in visitor.inputs if label.startswith(("θ", "Tool", *"XYZ"))]
 
 
 def test_the_sliders_are_those_of_the_robot(
@@ -187,7 +188,7 @@ def test_a_robot_that_never_told_its_pose_is_whole(own_stand: Any, other_robot: 
     own_stand.machine.snapshot = dataclasses.replace(
         own_stand.machine.snapshot, xyz=None, theta=None, target_theta=None, target_xyz=None
     )
-    own_stand.machine.robot = other_robot
+    own_stand.machine.loaded = Loaded(other_robot, own_stand.machine.loaded.text)
     own_stand.eventually(lambda: own_stand.scene._robot is other_robot)
     ready = other_robot.forward(other_robot.homing.ready) - other_robot.tool_offset
     assert drawn_tip(own_stand) == pytest.approx(ready)

@@ -24,6 +24,7 @@ from deltaviz.machine.intent import Accepted, Answer, Intent
 from deltaviz.machine.mode import Mode
 from deltaviz.machine.snapshot import LinkPhase, LinkStatus, Snapshot
 from deltaviz.robots import Robot, load_robot
+from deltaviz.robots.load import Loaded
 from deltaviz.web.app import create_app
 from deltaviz.web.listening import listen
 from deltaviz.web.origin import allowed_hosts
@@ -77,6 +78,10 @@ class FakeMachine:
         self.snapshot = snapshot_of(self.robot)
         self.told: list[Any] = []
         self.answer: Answer | Exception | None = Accepted()  # None: it never answers
+
+    @property
+    def loaded(self) -> Loaded:
+        return Loaded(self.robot, "")
 
     def links(self) -> tuple[Link, ...]:
         return (Link("sim", "sim://", "Simulated board"), Link("ttyusb0", "/dev/ttyUSB0", "A port"))

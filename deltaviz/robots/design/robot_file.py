@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 import tomllib
 from collections.abc import Sequence
 from typing import Any
@@ -12,6 +11,7 @@ import numpy as np
 
 from deltaviz.robots.design.candidate import Lengths, made
 from deltaviz.robots.design.wish import Wish
+from deltaviz.robots.file_text import file_text
 from deltaviz.robots.robot import Robot
 
 READY_DIGITS = 1  # of the degrees
@@ -24,22 +24,12 @@ def designed_file(
 
     Homing ends at the middle of what is to be reached.
     """
-    import tomli_w
-
     data = tomllib.loads(text)
     data["name"] = name
     data["geometry"] = _geometry(data["geometry"], template, lengths)
     data["workspace"] = _workspace(wish, lengths.floor)
     data["homing"]["ready_deg"] = _ready(template, lengths, wish)
-    head = "".join(f"# {note}\n" for note in notes)
-    return f"{head}{_ARRAY.sub(_in_one_line, tomli_w.dumps(data))}"
-
-
-_ARRAY = re.compile(r"\[\n((?:    [^\n]+,\n)+)\]")  # as tomli_w writes them, an entry a line
-
-
-def _in_one_line(array: re.Match[str]) -> str:
-    return f"[{', '.join(line.strip().rstrip(',') for line in array[1].splitlines())}]"
+    return file_text(data, notes)
 
 
 def _geometry(old: dict[str, Any], template: Robot, lengths: Lengths) -> dict[str, Any]:

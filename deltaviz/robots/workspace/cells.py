@@ -106,12 +106,13 @@ def reach_box(margins: Margins) -> Box:
 
 
 HULL_CELLS = 50_000  # judged at once before a hull is left as wide as it is
-HULL_SLACK = 0.01  # of its longest side, on each side
+HULL_SLACK = 0.01
 
 
-def hull(margins: Margins) -> Box | None:
+def hull(margins: Margins, *, slack: float = HULL_SLACK) -> Box | None:
     """A box around all of the workspace, proved, within some hundredths of its size; None if the
-    workspace is proved empty."""
+    workspace is proved empty. `slack` is how much it may be too wide on each side, of its longest:
+    less takes longer."""
     box = reach_box(margins)
     if box.empty:
         return None
@@ -122,7 +123,7 @@ def hull(margins: Margins) -> Box | None:
         cells = cells[~outside]
         legal = cells.centres[margins.least(cells.centres) >= 0]
         if len(legal):
-            found = Box(legal.min(axis=0), legal.max(axis=0)).grown(HULL_SLACK)
+            found = Box(legal.min(axis=0), legal.max(axis=0)).grown(slack)
             known = found if known is None else known.with_(found)
         if known is not None:
             cells = cells[cells.beyond(known)]

@@ -16,6 +16,7 @@ from deltaviz.robots.workspace.refine import refine
 
 COARSE = 36  # cells along the longest side
 FINE = 80
+ROUGH, ROUGH_SLACK = 24, 0.05  # cells, and share of the box that may be in vain
 CELLS_PER_TOLERANCE = 16  # of the last level: a finer tolerance wants a finer grid
 MOST_NODES = 8_000_000
 ATTEMPTS = 2  # with half the cell each, where thin corners keep the mesh from the tolerance
@@ -46,6 +47,15 @@ def levels(
             yield fine
             return
         cell /= 2
+
+
+def rough(robot: Robot, limits: Limit = Limit.MACHINE) -> Boundary:
+    """A coarse boundary in one to three hundredths of a second, for a hand that moves."""
+    margins = Margins.of(robot, limits)
+    box = hull(margins, slack=ROUGH_SLACK)
+    if box is None:
+        return nothing(margins, 1.0)
+    return march(margins, sample(margins, Grid.around(box, float(box.size.max()) / ROUGH)))
 
 
 def nothing(margins: Margins, cell: float) -> Boundary:

@@ -15,17 +15,17 @@ from trimesh.visual.texture import TextureVisuals
 from deltaviz.robots.workspace.shapes import Cuboid
 from deltaviz.scene import colours, shapes
 from deltaviz.scene.shapes import Shape
-from deltaviz.scene.units import metres
+from deltaviz.scene.units import Array, metres
 from deltaviz.scene.workspace.hits import Surfaces
 from deltaviz.scene.workspace.measures import coloured
 from deltaviz.scene.workspace.pictures import Fitted, Section, Singularities, Skin
 
 BOUNDARY, OUTLINE, FITTED = "/reach/boundary", "/reach/outline", "/reach/fitted"
-OBJECT = "/reach/object"
+DESIGN, OBJECT = "/reach/design", "/reach/object"
 SINGULAR = "/reach/type_1", "/reach/type_2"
 SECTIONS = tuple(f"/reach/section_{axis}" for axis in "xyz")
 
-_OPACITY = 0.22
+_OPACITY, _PALE = 0.22, 0.08
 _COLOURED = 0.5  # how opaque a boundary is that shows a measure
 _SINGULAR = 0.45
 _THIN = 0.002  # m, how thick a rectangle is drawn
@@ -49,6 +49,19 @@ class Drawing:
             self._lines(OUTLINE, skin.edges, colours.REACH)
         else:
             self._drop(OUTLINE)
+
+    def fade(self, pale: bool) -> None:
+        """The boundary of what is not any more what was asked for."""
+        boundary = self._nodes.get(BOUNDARY)
+        if isinstance(boundary, viser.MeshHandle):
+            boundary.opacity = _PALE if pale else _OPACITY
+
+    def design(self, segments: Array | None) -> None:
+        """(k, 2, 3): the arms of a robot that is not there."""
+        if segments is None:
+            self._drop(DESIGN)
+        else:
+            self._lines(DESIGN, segments, colours.DESIGN)
 
     def section(self, section: Section) -> None:
         self._fill(covered=True)
@@ -126,7 +139,7 @@ class Drawing:
             receive_shadow=False,
         )
 
-    def _lines(self, name: str, edges: NDArray[np.float32], colour: colours.Colour) -> None:
+    def _lines(self, name: str, edges: NDArray[np.floating], colour: colours.Colour) -> None:
         self._nodes[name] = self._scene.add_line_segments(
             name, points=edges, colors=colour, thickness=2.0, thickness_units="screen"
         )

@@ -77,16 +77,18 @@ class Inputs:
         self._texts.clear()
 
     def _kept(self, handle: Any, chosen: Callable[[Any], None]) -> Any:
-        handle.on_update(_told_of(chosen))
+        handle.on_update(by_a_person(chosen))
         self._handles.append(handle)
         return handle
 
 
-def _told_of(
-    chosen: Callable[[Any], None],
+def by_a_person(
+    change: Callable[[Any], None],
 ) -> Callable[[GuiEvent[Any]], Coroutine[None, None, None]]:
+    """A callback that hands the new value on. Async callbacks keep their order."""
+
     async def update(event: GuiEvent[Any]) -> None:
         if event.client is not None:
-            chosen(event.target.value)
+            change(event.target.value)
 
     return update

@@ -77,6 +77,11 @@ class ObjectShown:
             case _:
                 return
 
+    def consider(self, robot: Robot, *, moving: bool) -> None:
+        """The same robot with other lengths."""
+        self._robot = robot
+        self._order()
+
     def leave(self) -> None:
         """Nothing is wanted any more."""
         self._cancel_proof()

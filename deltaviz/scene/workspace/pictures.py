@@ -48,6 +48,13 @@ class Section:
 
 
 @dataclass(frozen=True)
+class NoSection:
+    """Nothing across `axis`: the workspace is empty."""
+
+    axis: int
+
+
+@dataclass(frozen=True)
 class Fitted:
     """The largest upright cylinder about the vertical line through the origin (in a plane, the
     largest rectangle); None if nothing fits."""
@@ -121,4 +128,4 @@ class Probed:
     skill: Skill | None
 
 
-Picture = Skin | Section | Fitted | Singularities | Laid | Served | Probed | Failed
+Picture = Skin | Section | NoSection | Fitted | Singularities | Laid | Served | Probed | Failed

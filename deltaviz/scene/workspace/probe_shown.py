@@ -62,6 +62,7 @@ class ProbeShown:
         self._quick = quick
         self._listening = False
         self._mark: Mark | None = None
+        self._point: Point | None = None
         inputs.toggle("Probe", choices.on, self._set_on)
         self._place = inputs.line("Point", self._typed, hint=HINT)
         self._readout: viser.GuiHtmlHandle = inputs.readout()
@@ -77,6 +78,12 @@ class ProbeShown:
                 self._tell(text)
             case _:
                 return
+
+    def consider(self, robot: Robot, *, moving: bool) -> None:
+        """The same robot with other lengths."""
+        self._robot = robot
+        if self._point is not None:
+            self._probe(self._point)
 
     def leave(self) -> None:
         """Nothing is wanted any more."""
@@ -132,6 +139,7 @@ class ProbeShown:
     def _probe(self, point: Point) -> None:
         if self._mark is None:
             self._tell("Computing …")
+        self._point = point
         self._draw(point)
         self._quick(TOPIC, Probe(self._robot, point))
 
@@ -159,7 +167,7 @@ class ProbeShown:
         self._quick(TOPIC, None)
         for node in self._mark or ():
             node.remove()
-        self._mark = None
+        self._mark = self._point = None
 
     def _tell(self, text: str) -> None:
         self._readout.content = _table([(text, "")]) if text else ""

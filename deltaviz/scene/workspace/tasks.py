@@ -18,9 +18,10 @@ from deltaviz.robots.workspace import Boundary, Limit, Margins, levels, quality
 from deltaviz.robots.workspace.cells import Box, hull
 from deltaviz.robots.workspace.empty import why_empty
 from deltaviz.robots.workspace.field import Grid, sample
+from deltaviz.robots.workspace.levels import rough
 from deltaviz.scene.units import Array, metres, millimetres
 from deltaviz.scene.workspace.measures import PLAIN, PLAIN_COLOUR, Measure, coloured, measure_named
-from deltaviz.scene.workspace.pictures import Fitted, Picture, Section, Skin
+from deltaviz.scene.workspace.pictures import Fitted, NoSection, Picture, Section, Skin
 
 PIXELS = 200  # along a section's longest side
 DRAFT = 80  # the same while it is moved
@@ -45,6 +46,16 @@ class Coarse:
     def pictures(self) -> Iterator[Picture]:
         first = next(levels(self.robot))
         yield _skin(self.robot, first, self.measure, coarse=True)
+
+
+@dataclass(frozen=True)
+class Rough:
+    """The boundary at a moving hand's pace."""
+
+    robot: Robot
+
+    def pictures(self) -> Iterator[Picture]:
+        yield _skin(self.robot, rough(self.robot), PLAIN, coarse=True)
 
 
 @dataclass(frozen=True)
@@ -76,18 +87,22 @@ class Coloured:
 
 @dataclass(frozen=True)
 class Cut:
-    """A plane across axis 0, 1 or 2 (x, y, z) at `level` mm, coloured by a measure's name; a
-    picture for each number of `pixels` along its longest side."""
+    """A plane across axis 0, 1 or 2 (x, y, z) at `level` mm, coloured by a measure's name, on a
+    `scale` from elsewhere or else its own; a picture for each number of `pixels` along its longest
+    side."""
 
     robot: Robot
     axis: int
     level: float
     measure: str
     pixels: tuple[int, ...] = (PIXELS,)
+    scale: tuple[float, float] | None = None
 
     def pictures(self) -> Iterator[Picture]:
         box = _hull(self.robot)
-        if box is not None:
+        if box is None:
+            yield NoSection(self.axis)
+        else:
             yield from (self._drawn(box, pixels) for pixels in self.pixels)
 
     def _drawn(self, box: Box, pixels: int) -> Section:
@@ -101,7 +116,7 @@ class Cut:
         points[..., across[0]], points[..., across[1]] = columns, rows
         own = points if len(box.low) == 3 else points[..., [0, 2]]
         margin = _margins(self.robot).least(own)
-        image, scale = _painted(self.robot, own, margin, self.measure, step)
+        image, scale = self._painted(own, margin, step)
         corners = points[0, 0].copy(), points[-1, -1].copy()
         for i in across:  # a pixel is as wide as the way between two points
             corners[0][i] -= step / 2
@@ -115,6 +130,21 @@ class Cut:
             span=(float(low[self.axis]), float(high[self.axis])),
             scale=scale,
         )
+
+    def _painted(
+        self, points: Array, margin: Array, step: float
+    ) -> tuple[NDArray[np.uint8], tuple[float, float] | None]:
+        """RGBA, whose edge fades over a pixel; and the ends of the scale."""
+        image = np.zeros((*margin.shape, 4), np.uint8)
+        image[..., 3] = np.clip(255 * (0.5 + margin / step), 0, 255)
+        measure = measure_named(self.measure)
+        if measure is None:
+            image[..., :3] = PLAIN_COLOUR
+            return image, None
+        scale = self.scale or _scale(self.robot, measure.field)
+        seen = image[..., 3] > 0  # elsewhere the arms may not reach
+        image[seen, :3] = coloured(_shares(self.robot, points[seen], measure, scale))
+        return image, scale
 
 
 @dataclass(frozen=True)
@@ -155,27 +185,11 @@ def _scale(robot: Robot, field: str) -> tuple[float, float]:
     return low, max(high, low + 1e-9)
 
 
-def _painted(
-    robot: Robot, points: Array, margin: Array, name: str, step: float
-) -> tuple[NDArray[np.uint8], tuple[float, float] | None]:
-    """RGBA, whose edge fades over a pixel; and the ends of the scale."""
-    image = np.zeros((*margin.shape, 4), np.uint8)
-    image[..., 3] = np.clip(255 * (0.5 + margin / step), 0, 255)
-    measure = measure_named(name)
-    if measure is None:
-        image[..., :3] = PLAIN_COLOUR
-        return image, None
-    seen = image[..., 3] > 0  # elsewhere the arms may not reach
-    share, scale = _shares(robot, points[seen], measure)
-    image[seen, :3] = coloured(share)
-    return image, scale
-
-
-def _shares(robot: Robot, points: Array, measure: Measure) -> tuple[Array, tuple[float, float]]:
-    """The places of points (n, d) on a measure's scale, (n,) from 0 to 1; and its ends."""
-    low, high = _scale(robot, measure.field)
+def _shares(robot: Robot, points: Array, measure: Measure, scale: tuple[float, float]) -> Array:
+    """The places of points (n, d) on a measure's scale, (n,) from 0 to 1."""
+    low, high = scale
     values = np.nan_to_num(getattr(quality(robot, points), measure.field), nan=low)
-    return np.clip((values - low) / (high - low), 0.0, 1.0), (low, high)
+    return np.clip((values - low) / (high - low), 0.0, 1.0)
 
 
 def _skin(robot: Robot, boundary: Boundary, name: str, *, coarse: bool) -> Skin:
@@ -203,7 +217,8 @@ def in_colours(robot: Robot, skin: Skin, name: str) -> Skin:
     measure = measure_named(name)
     if measure is None or not len(skin.faces) or len(skin.edges):
         return replace(skin, measure=name, share=None, scale=None)
-    share, scale = _shares(robot, millimetres(skin.vertices), measure)
+    scale = _scale(robot, measure.field)
+    share = _shares(robot, millimetres(skin.vertices), measure, scale)
     return replace(skin, measure=name, share=share.astype(np.float32), scale=scale)
 
 

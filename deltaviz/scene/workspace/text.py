@@ -7,21 +7,21 @@ import math
 from dataclasses import dataclass, field
 
 from deltaviz.scene import colours
+from deltaviz.scene.workspace.compared import OwnSize, size_told
 from deltaviz.scene.workspace.measures import PLAIN, css_gradient, measure_named
 from deltaviz.scene.workspace.pictures import Fitted, Singularities, Skin, Surface
 
 _NAMES = {
     "boundary": "the reach",
+    "refined": "the reach",
     "fitted": "the largest body",
     "singular": "the singularities",
-    "X": "",
-    "Y": "",
-    "Z": "",
 }
 _KINDS = (
     ("Type 1", "an arm straight or folded: the end of what the arms reach"),
     ("Type 2", "the forearms hold the effector no more"),
 )
+_LINES = 3  # always there, so that what is below does not jump
 
 
 @dataclass
@@ -35,6 +35,7 @@ class Told:
     singular: Singularities | None = None
     scale: tuple[float, float] | None = None
     problem: str | None = None
+    own: OwnSize | None = None  # what the reach is compared with
     waiting: set[str] = field(default_factory=set[str])
 
     def html(self) -> str:
@@ -43,6 +44,7 @@ class Told:
         body += self._singular() + self._key()
         return (
             "<div style='font-size:12px;line-height:1.4;padding:4px 8px;"
+            f"min-height:calc({_LINES} * 1.4em + 8px);"
             f"font-variant-numeric:tabular-nums'>{body}</div>"
         )
 
@@ -52,7 +54,8 @@ class Told:
             lines.append(self._reach(self.skin))
         if self.fitted is not None:
             lines.append(self._fitted(self.fitted))
-        named = sorted({_NAMES[topic] for topic in self.waiting} - {""})
+        waiting = self.waiting - ({"boundary"} if self.skin is not None else set())
+        named = sorted({_NAMES[topic] for topic in waiting if topic in _NAMES})
         if named:
             lines.append(f"Computing {' and '.join(named)} …")
         return lines
@@ -60,7 +63,9 @@ class Told:
     def _reach(self, skin: Skin) -> str:
         if skin.reason is not None:
             return f"The workspace is empty. {skin.reason}"
-        size = f"{skin.size / 100:.4g} cm²" if self.planar else f"{skin.size / 1e6:.3g} l"
+        size = size_told(skin.size, planar=self.planar)
+        if self.own is not None and (compared := self.own.against(skin)):
+            size = f"{size} ({compared})"
         if skin.deviation is None:
             return f"Reach: about {size}, drawn coarsely."
         return f"Reach: {size}, drawn within {max(skin.deviation, 0.1):.1f} mm."
