@@ -39,11 +39,13 @@ def click(visitor: Any, x: float, y: float) -> None:
 
 
 def drawn(name: str) -> Callable[[dict[str, Any]], bool]:
-    return lambda m: m.get("name") == name and "props" in m
+    """Itself, or a picture in its place."""
+    return lambda m: m.get("name") in (name, f"{name}/a", f"{name}/b") and "props" in m
 
 
 def gone(name: str) -> Callable[[dict[str, Any]], bool]:
-    return lambda m: m["type"] == "RemoveSceneNodeMessage" and m["name"] == name
+    names = (name, f"{name}/a", f"{name}/b")
+    return lambda m: m["type"] == "RemoveSceneNodeMessage" and m["name"] in names
 
 
 def told(text: str) -> Callable[[dict[str, Any]], bool]:

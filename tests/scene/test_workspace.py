@@ -37,7 +37,8 @@ def choose(visitor: Any, label: str, value: Any) -> None:
 
 
 def drawn(name: str) -> Callable[[dict[str, Any]], bool]:
-    return lambda m: m.get("name") == name and "props" in m
+    """Itself, or a picture in its place."""
+    return lambda m: m.get("name") in (name, f"{name}/a", f"{name}/b") and "props" in m
 
 
 def told(text: str) -> Callable[[dict[str, Any]], bool]:

@@ -19,6 +19,7 @@ from deltaviz.scene.units import Array, metres
 from deltaviz.scene.workspace.hits import Surfaces
 from deltaviz.scene.workspace.measures import coloured
 from deltaviz.scene.workspace.pictures import Fitted, Section, Singularities, Skin
+from deltaviz.scene.workspace.relay import Relay
 
 BOUNDARY, OUTLINE, FITTED = "/reach/boundary", "/reach/outline", "/reach/fitted"
 DESIGN, OBJECT = "/reach/design", "/reach/object"
@@ -35,7 +36,7 @@ _LOWER = 0.0004  # m, that a thing is drawn below a section at its height: they 
 class Drawing:
     def __init__(self, scene: viser.SceneApi) -> None:
         self._scene = scene
-        self._nodes: dict[str, viser.SceneNodeHandle] = {}
+        self._nodes: dict[str, viser.SceneNodeHandle | Relay] = {}
         self.surfaces = Surfaces()
 
     def skin(self, skin: Skin | None) -> None:
@@ -118,14 +119,16 @@ class Drawing:
         if planar and (covered or SECTIONS[1] in self._nodes):
             self._drop(BOUNDARY)
         elif not covered and skin.share is not None and not planar:
-            self._glb(BOUNDARY, _shaded(skin, skin.share))
+            self._nodes[BOUNDARY] = self._glb(BOUNDARY, _shaded(skin, skin.share))
         elif not covered:
             shape = Shape(skin.vertices, skin.faces)
             self._mesh(BOUNDARY, shape, colours.REACH, _OPACITY)
 
     def _picture(self, name: str, section: Section, *, lower: float = 0.0) -> None:
         self.surfaces.flat[name] = section
-        self._glb(name, _glowing(section), lower=lower)
+        if not isinstance(relay := self._nodes.get(name), Relay):
+            relay = self._nodes[name] = Relay(name)
+        relay.show(lambda own: self._glb(own, _glowing(section), lower=lower))
 
     def _mesh(self, name: str, shape: Shape, colour: colours.Colour, opacity: float) -> None:
         self._nodes[name] = self._scene.add_mesh_simple(
@@ -144,8 +147,10 @@ class Drawing:
             name, points=edges, colors=colour, thickness=2.0, thickness_units="screen"
         )
 
-    def _glb(self, name: str, mesh: trimesh.Trimesh, *, lower: float = 0.0) -> None:
-        self._nodes[name] = self._scene.add_mesh_trimesh(
+    def _glb(
+        self, name: str, mesh: trimesh.Trimesh, *, lower: float = 0.0
+    ) -> viser.SceneNodeHandle:
+        return self._scene.add_mesh_trimesh(
             name,
             mesh,
             cast_shadow=False,
