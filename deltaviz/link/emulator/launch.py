@@ -23,8 +23,7 @@ _PR_SET_PDEATHSIG = 1  # linux/prctl.h
 
 def main() -> int:
     options = _options()
-    if options.pace is None:
-        _step_back()
+    _step_back()
     pace, paced = Pace.pair()
     descriptors = {
         "link": options.link,
@@ -66,9 +65,7 @@ def _end_with_input(emulator: subprocess.Popen[bytes]) -> None:
 
 
 def _step_back() -> None:
-    """Whoever starts this may come before all others. An emulator that keeps our time must not:
-    it never rests.
-    """
+    """Whoever starts this may come before all others. An emulator must not: it never rests."""
     if hasattr(os, "sched_setscheduler"):
         os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
     os.setpriority(os.PRIO_PROCESS, 0, max(0, os.getpriority(os.PRIO_PROCESS, 0)))
