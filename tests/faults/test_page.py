@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import importlib.util
+import re
 from pathlib import Path
 from types import ModuleType
 
+import pytest
+
 DOCS = Path(__file__).parents[2] / "docs"
+NUMBER = re.compile(r"\d+(?:\.\d+)?")
 
 
 def script() -> ModuleType:
@@ -19,8 +23,15 @@ def script() -> ModuleType:
 
 
 def test_the_page_is_todays() -> None:
-    todays = script().todays()
-    assert todays == (DOCS / "reliability.md").read_text(), "run: python docs/reliability.py"
+    """In all words, and in its numbers as nearly as processors round alike: a last digit can move a
+    knot, and with it the frames that a fault meets.
+    """
+    todays, page = script().todays(), (DOCS / "reliability.md").read_text()
+    told = "run: python docs/reliability.py"
+    assert NUMBER.sub("#", todays) == NUMBER.sub("#", page), told
+    for today, then in zip(NUMBER.findall(todays), NUMBER.findall(page), strict=True):
+        least = 0.1 if "." in then else 1
+        assert float(today) == pytest.approx(float(then), rel=0.02, abs=least), told
 
 
 def test_what_goes_beyond_a_limit_would_stand_there() -> None:
