@@ -2,9 +2,9 @@
 
 python docs/reliability.py
 
-All is by seeds and on clocks that are turned by hand, so it comes out alike everywhere, but for some
-frames where processors round differently. The tests in tests/faults measure the same, judge it, and
-hold the page to it.
+All is by seeds and on clocks that are turned by hand, so it comes out alike everywhere, but for
+some frames where processors round differently. The tests in tests/faults measure the same, judge
+it, and hold the page to it.
 """
 
 from __future__ import annotations
