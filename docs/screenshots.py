@@ -31,7 +31,7 @@ SHOWN: dict[str, tuple[list[str], str]] = {
     "workspace": (["Reach", "Section X", "Section Z"], "Conditioning"),
     "fivebar-workspace": (["Reach", "Coloured plane"], "Conditioning"),
 }
-PENDANT = "390x844"  # where the scene has no panel
+PENDANT = "390x844"  # where the scene has no panel, and the console's view has its inputs
 FLAGS = [
     "--no-sandbox",
     "--use-angle=swiftshader",
@@ -61,9 +61,9 @@ def take_all(picture: str, robot: str, way: list[tuple[float, float, float]]) ->
                 )
                 for theme in THEMES:
                     for name, size in SIZES.items():
-                        if name == PENDANT and picture in SHOWN:
-                            continue
-                        take(browser, url, theme, size, way, f"{picture}-{name}-{theme}.png")
+                        take(
+                            browser, url, theme, size, way, picture, f"{picture}-{name}-{theme}.png"
+                        )
         finally:
             server.terminate()
 
@@ -74,6 +74,7 @@ def take(
     theme: Literal["light", "dark"],
     size: tuple[int, int],
     way: list[tuple[float, float, float]],
+    picture: str,
     name: str,
 ) -> None:
     context = browser.new_context(
@@ -85,8 +86,8 @@ def take(
     page.frame_locator("#scene").locator("canvas").first.wait_for(timeout=LONG)
     for place in way:
         go(page, url, place)
-    if picture := SHOWN.get(name.split("-1280x800")[0]):
-        show_workspace(page, *picture)
+    if shown := SHOWN.get(picture):
+        (show_on_the_pendant if size == SIZES[PENDANT] else show_workspace)(page, *shown)
     page.wait_for_timeout(9000)  # for the pictures only: drawing catches up, notices go
     page.screenshot(path=DOCS / name)
     context.close()
@@ -101,6 +102,15 @@ def show_workspace(page: Page, layers: list[str], colours: str) -> None:
     scene.get_by_label("Colours", exact=True).click()
     scene.get_by_role("option", name=colours, exact=True).click()
     scene.get_by_text("drawn within").wait_for(timeout=LONG)
+
+
+def show_on_the_pendant(page: Page, layers: list[str], colours: str) -> None:
+    page.locator(".tabs [data-view=view]").click()
+    for layer in layers:
+        page.get_by_label(layer, exact=True).check(timeout=LONG)
+    page.get_by_label("Colours", exact=True).select_option(colours)
+    page.get_by_text("drawn within").wait_for(timeout=LONG)
+    page.get_by_text("drawn within").scroll_into_view_if_needed()
 
 
 def go(page: Page, url: str, place: tuple[float, float, float]) -> None:

@@ -1,12 +1,12 @@
 /**
  * The page's websocket: reconnects with a growing pause, and never resumes anything.
  *
- * @import {Message, StateMessage, RefusedMessage, ErrorMessage} from "./types.js"
+ * @import {Message, ServerMessage} from "./types.js"
  *
  * @typedef {{
  *   opened: (away: number) => void,  // after so many ms; 0 the first time
  *   closed: () => void,
- *   received: (message: StateMessage | RefusedMessage | ErrorMessage) => void,
+ *   received: (message: ServerMessage) => void,
  * }} ConnectionHandlers
  */
 

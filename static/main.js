@@ -21,6 +21,7 @@ import { watchPresence } from "./presence.js";
 import { Readouts } from "./readouts.js";
 import { addRobotChoice } from "./robot-choice.js";
 import { readRobot } from "./robot.js";
+import { SceneView } from "./scene-view.js";
 import { Status } from "./status.js";
 import { Stopper } from "./stop.js";
 import { Store } from "./store.js";
@@ -54,6 +55,7 @@ const views = new Views(() => {
 const theme = new ThemeChoice(themeChanged);
 const links = new LinkChoice({ store, watch });
 const panel = new ViserPanel();
+const sceneView = new SceneView({ choose: (item, value) => connection.send({ type: "show", item, value }) });
 
 new Status({ store, watch });
 new Readouts(store);
@@ -131,10 +133,12 @@ function closed() {
   store.changed();
 }
 
-/** @param {import("./types.js").StateMessage | import("./types.js").RefusedMessage | import("./types.js").ErrorMessage} message */
+/** @param {import("./types.js").ServerMessage} message */
 function received(message) {
   if (message.type === "state") {
     store.receive(message);
+  } else if (message.type === "view") {
+    sceneView.show(message.items);
   } else if (message.type === "refused") {
     const wasHeld = hands.refused(message.id);
     const isBeat = message.to === "drag_alive" || message.to === "jog" || message.to === "jog_end";

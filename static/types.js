@@ -54,10 +54,24 @@
  * A message to the server; every one has a `type`.
  * @typedef {{type: string, [field: string]: unknown}} Message
  *
+ * What the scene's panel holds, in plain values (`scene-view.js`).
+ * @typedef {{key: string, group: string}} ItemPlace
+ * @typedef {[number, number, number]} Rgb
+ * @typedef {{kind: "row", text: string, value: string, dot: Rgb | null}
+ *   | {kind: "colours", name: string, low: string, high: string, stops: Rgb[]}} ViewRow
+ * @typedef {ItemPlace & ({kind: "toggle", label: string, value: boolean}
+ *   | {kind: "choice", label: string, value: string, options: string[]}
+ *   | {kind: "slider", label: string, value: number, low: number, high: number, step: number}
+ *   | {kind: "line", label: string, value: string, hint: string, longest: number}
+ *   | {kind: "button", label: string, disabled: boolean}
+ *   | {kind: "readout", rows: ViewRow[]})} Item
+ *
  * A message from the server.
+ * @typedef {{type: "view", items: Item[] | null}} ViewMessage
  * @typedef {{type: "state"} & RobotState} StateMessage
  * @typedef {{type: "refused", to: string, id: string | null, detail: string}} RefusedMessage
  * @typedef {{type: "error", detail: string}} ErrorMessage
+ * @typedef {StateMessage | ViewMessage | RefusedMessage | ErrorMessage} ServerMessage
  */
 
 export {};

@@ -2,19 +2,25 @@
 
 import { byId, markPressed } from "./dom.js";
 
-/** @typedef {"jog" | "pose" | "setup"} View */
+/** @typedef {"jog" | "pose" | "view" | "setup"} View */
 
 export class Views {
   #app = byId("app", HTMLElement);
-  #toggle = byId("setup-toggle", HTMLButtonElement);
   #tabs = document.querySelectorAll(".tabs button");
   #pad = byId("pad", HTMLElement);
   #changed;
+  /** What takes the jog pad's place where there is room for one of them. @type {[View, HTMLButtonElement][]} */
+  #toggles = [
+    ["view", byId("view-toggle", HTMLButtonElement)],
+    ["setup", byId("setup-toggle", HTMLButtonElement)],
+  ];
 
   /** @param {() => void} changed */
   constructor(changed) {
     this.#changed = changed;
-    this.#toggle.addEventListener("click", () => this.show(this.#view === "setup" ? "jog" : "setup"));
+    for (const [view, toggle] of this.#toggles) {
+      toggle.addEventListener("click", () => this.show(this.#view === view ? "jog" : view));
+    }
     for (const tab of this.#tabs) {
       tab.addEventListener("click", () =>
         this.show(/** @type {View} */ (/** @type {HTMLElement} */ (tab).dataset["view"])),
@@ -35,7 +41,9 @@ export class Views {
   show(view) {
     this.#app.dataset["view"] = view;
     markPressed(this.#tabs, (tab) => tab.dataset["view"] === view);
-    this.#toggle.setAttribute("aria-expanded", String(view === "setup"));
+    for (const [own, toggle] of this.#toggles) {
+      toggle.setAttribute("aria-expanded", String(own === view));
+    }
     this.#changed();
   }
 }

@@ -24,6 +24,7 @@ from deltaviz.robots.load import Loaded
 from deltaviz.scene.controls import Controls
 from deltaviz.scene.drag import Dragging, eye_of
 from deltaviz.scene.gateway import Gate, make_router
+from deltaviz.scene.items import AnyItem
 from deltaviz.scene.listener import SESSION, Listener, open_listener
 from deltaviz.scene.page import Page, load_page
 from deltaviz.scene.panel import Panel
@@ -53,6 +54,7 @@ class Scene:
         self._displays: dict[str | None, Display] = {}
         self._viewers: dict[int, Viewer] = {}
         self._notes: dict[str, float] = {}
+        self._items: dict[str, tuple[AnyItem, ...]] = {}
         self._frames = 0
         self._quick, self._patient = Worker(self._computed), Worker(self._computed)
         self._shown: Snapshot | None = None
@@ -114,6 +116,16 @@ class Scene:
         """Show this session's scene dark or light. From any thread."""
         self._display_of(session).dark = dark
         self._soon(self._apply_theme, session)
+
+    def items(self, session: str) -> tuple[AnyItem, ...] | None:
+        """What this session may choose of its picture; the same object while nothing changes.
+        None while it has no picture. From any thread."""
+        return self._items.get(session)
+
+    def choose(self, session: str, key: str, value: object, refused: Callable[[str], None]) -> None:
+        """Choose an item in this session's picture, in all its browsers. From any thread;
+        `refused` is called with the reason, in another."""
+        self._soon(self._choose, session, key, value, refused)
 
     def tell(self, session: str, text: str) -> None:
         """Show a sentence in this session's panel for a while. From any thread."""
@@ -207,6 +219,29 @@ class Scene:
             if viewer.session is not None and self._notes.get(viewer.session, 0.0) < now:
                 other = snapshot.holder not in (None, viewer.session)
                 viewer.tell("Another session has control." if other else "")
+        self._gather_items()
+
+    def _gather_items(self) -> None:
+        """Of several browsers of one session those of the newest."""
+        gathered = {v.session: v.equals.items() for v in self._viewers.values() if v.session}
+        for session, items in gathered.items():
+            before = self._items.get(session)
+            if before is not None and before == items:
+                gathered[session] = before
+        self._items = gathered
+
+    def _choose(
+        self, session: str, key: str, value: object, refused: Callable[[str], None]
+    ) -> None:
+        viewers = [v for v in self._viewers.values() if v.session == session]
+        if not viewers:
+            refused("The scene is not open.")
+        may_steer = self._may_steer(session, self._machine.snapshot)
+        for viewer in viewers:
+            reason = viewer.equals.choose(key, value, may_steer=may_steer)
+            if reason is not None:
+                refused(reason)
+                return
 
     @staticmethod
     def _may_steer(session: str | None, snapshot: Snapshot) -> bool:

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import html
 import math
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
 import viser
-from viser import ClientHandle, GuiCheckboxHandle, GuiEvent
+from viser import ClientHandle
 
 from deltaviz.robots.load import Loaded
 from deltaviz.scene import colours, inner
 from deltaviz.scene.controls import Controls
 from deltaviz.scene.drag import BINDINGS, Dragging
+from deltaviz.scene.equals import Equals
+from deltaviz.scene.inputs import Inputs
 from deltaviz.scene.panel import Panel
 from deltaviz.scene.robot_model import RobotModel
 from deltaviz.scene.workspace.orders import Send
@@ -73,15 +75,16 @@ class Viewer:
         self.session = session
         self._display = display
         self._panel = panel
-        self._controls = controls
         self._dragging = dragging
         self._may_steer: bool | None = None
         self._tell_again = 0
         self._handle: viser.IcosphereHandle | None = None
         self._handle_scale = 1.0
-        self._toggles = self._add_toggles()
+        self.equals = Equals(controls)
+        self._toggles = Inputs("Display", client.gui, controls, self.equals)
+        self._add_toggles()
         self.reach = WorkspaceShown(
-            client, controls, display.reach, loaded, quick=quick, patient=patient
+            client, controls, self.equals, display.reach, loaded, quick=quick, patient=patient
         )
         self._note = client.gui.add_html("", visible=False, order=-1.0)
         self.apply_theme()
@@ -90,8 +93,7 @@ class Viewer:
 
     def leave(self) -> None:
         """The browser is gone."""
-        for toggle in self._toggles:
-            self._controls.retire(toggle)
+        self._toggles.retire()
         self.reach.leave()
 
     def apply_theme(self) -> None:
@@ -164,24 +166,17 @@ class Viewer:
             self._handle.visible = may_steer
         self.reach.set_steering(may_steer)
 
-    def _add_toggles(self) -> list[GuiCheckboxHandle]:
-        toggles: list[GuiCheckboxHandle] = []
+    def _add_toggles(self) -> None:
         with self._panel.display_folder:
             for choice, title in _TITLES.items():
-                toggle = self.client.gui.add_checkbox(title, getattr(self._display, choice))
-                toggle.on_update(self._on_toggle(choice))
-                self._controls.add_toggle(toggle)
-                toggles.append(toggle)
-        return toggles
+                self._toggles.toggle(title, getattr(self._display, choice), self._setter(choice))
 
-    def _on_toggle(
-        self, choice: str
-    ) -> Callable[[GuiEvent[GuiCheckboxHandle]], Coroutine[None, None, None]]:
-        async def update(event: GuiEvent[GuiCheckboxHandle]) -> None:
-            setattr(self._display, choice, event.target.value)
+    def _setter(self, choice: str) -> Callable[[bool], None]:
+        def choose(wanted: bool) -> None:
+            setattr(self._display, choice, wanted)
             self._apply(choice)
 
-        return update
+        return choose
 
     def _apply(self, choice: str) -> None:
         wanted = getattr(self._display, choice)

@@ -127,6 +127,10 @@ class Conversation:
                 self._post(message, intent.SetOverride(client, message.value))
             case messages.Theme():
                 self._scene.set_theme(client, message.dark)
+            case messages.Show():
+                self._scene.choose(
+                    client, message.item, message.value, lambda why: self._refused(message, why)
+                )
             case messages.Control(action="request"):
                 self._post(message, intent.RequestControl(client))
             case messages.Control():

@@ -84,7 +84,21 @@ class Theme(Model):
     dark: Annotated[bool, Strict()]
 
 
-PageMessage = JogStart | Jog | JogEnd | DragAlive | SetOverride | Stop | EStop | Control | Theme
+class Show(Model):
+    """Choose an item of this page's view of the scene, by its key."""
+
+    type: Literal["show"]
+    item: Annotated[str, Field(min_length=1, max_length=80)]
+    value: (
+        Annotated[bool, Strict()]
+        | Annotated[float, Strict(), Field(allow_inf_nan=False)]
+        | Annotated[str, Field(max_length=200)]
+    )
+
+
+PageMessage = (
+    JogStart | Jog | JogEnd | DragAlive | SetOverride | Stop | EStop | Control | Theme | Show
+)
 
 PAGE_MESSAGE: TypeAdapter[PageMessage] = TypeAdapter(
     Annotated[PageMessage, Field(discriminator="type")]
@@ -99,4 +113,5 @@ TYPES = (
     "estop",
     "control",
     "theme",
+    "show",
 )

@@ -8,6 +8,8 @@ from typing import Protocol
 from fastapi import APIRouter
 from starlette.requests import HTTPConnection
 
+from deltaviz.scene.items import AnyItem
+
 
 class ScenePort(Protocol):
     """The 3D view, running elsewhere; thread-safe."""
@@ -23,6 +25,15 @@ class ScenePort(Protocol):
 
     def camera_yaw(self, session: str) -> float | None:
         """The turn (rad, about Z) from base +X to the right of this session's view, if any."""
+        ...
+
+    def items(self, session: str) -> tuple[AnyItem, ...] | None:
+        """What this session may choose of its view, and what it is told; the same object while
+        nothing changes. None while it has no view."""
+        ...
+
+    def choose(self, session: str, key: str, value: object, refused: Callable[[str], None]) -> None:
+        """Choose one of the items; `refused` is called with the reason, from another thread."""
         ...
 
     def set_theme(self, session: str, dark: bool) -> None:

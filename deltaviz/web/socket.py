@@ -18,6 +18,7 @@ from deltaviz.web.once import OncePerMinute
 from deltaviz.web.scene_port import ScenePort
 from deltaviz.web.session import Sessions
 from deltaviz.web.state import state_json
+from deltaviz.web.view_json import view_json
 
 STATE_PERIOD = 1 / 40  # s; 30 Hz is promised
 MAX_SOCKETS = 64
@@ -80,6 +81,7 @@ class Pages:
         """The state, again and again. While this page is slow, states are left out."""
         with contextlib.suppress(WebSocketDisconnect, RuntimeError):  # it is gone: _listen ends
             next_state = time.monotonic()
+            told = None
             while True:
                 for reply in outbox.take():
                     await websocket.send_text(json.dumps(reply))
@@ -87,6 +89,9 @@ class Pages:
                 if now >= next_state:
                     await websocket.send_text(self._state_for(client))
                     next_state = now + STATE_PERIOD
+                    if (items := self._scene.items(client)) is not told:
+                        await websocket.send_text(view_json(items))
+                        told = items
                 await outbox.wait(next_state - time.monotonic())
 
     def _state_for(self, client: str) -> str:

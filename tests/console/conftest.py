@@ -146,6 +146,80 @@ SHAPES: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
 }
 
 
+# One of each kind that the scene may have in its panel.
+VIEW: list[dict[str, Any]] = [
+    {
+        "kind": "toggle",
+        "key": "Display: Trail",
+        "group": "Display",
+        "label": "Trail",
+        "value": True,
+    },
+    {
+        "kind": "toggle",
+        "key": "Workspace: Reach",
+        "group": "Workspace",
+        "label": "Reach",
+        "value": False,
+    },
+    {
+        "kind": "choice",
+        "key": "Workspace: Colours",
+        "group": "Workspace",
+        "label": "Colours",
+        "value": "One colour",
+        "options": ["One colour", "Conditioning", "Resolution"],
+    },
+    {
+        "kind": "line",
+        "key": "Workspace: Point",
+        "group": "Workspace",
+        "label": "Point",
+        "value": "",
+        "hint": "Type X Y Z in mm.",
+        "longest": 80,
+    },
+    {
+        "kind": "readout",
+        "key": "Workspace: Reach told",
+        "group": "Workspace",
+        "rows": [
+            {
+                "kind": "row",
+                "text": "Reach: 31.0 l, drawn within 0.5 mm.",
+                "value": "",
+                "dot": None,
+            },
+            {"kind": "row", "text": "Type 2", "value": "9 mm", "dot": [200, 30, 120]},
+            {
+                "kind": "colours",
+                "name": "Resolution, mm per microstep",
+                "low": "0.03",
+                "high": "0.11",
+                "stops": [[68, 40, 120], [252, 231, 62]],
+            },
+        ],
+    },
+    {
+        "kind": "slider",
+        "key": "Geometry: Forearm",
+        "group": "Geometry",
+        "label": "Forearm",
+        "value": 338.0,
+        "low": 135.0,
+        "high": 676.0,
+        "step": 1.0,
+    },
+    {
+        "kind": "button",
+        "key": "Geometry: Save as robot file",
+        "group": "Geometry",
+        "label": "Save as robot file",
+        "disabled": True,
+    },
+]
+
+
 class Machine:
     """The server's side of the page: sends the state given, keeps what the page says."""
 
@@ -168,6 +242,7 @@ class Machine:
             self.state = json.loads(json.dumps(READY))
             self.robot = json.loads(json.dumps(ROBOT))
             self.ports = list(PORTS)
+            self.view: list[dict[str, Any]] | None = json.loads(json.dumps(VIEW))
             self.heard: list[dict[str, Any]] = []
             self.posts: list[tuple[str, Any]] = []
             self.refusals: dict[str, tuple[int, str]] = {}
@@ -219,6 +294,12 @@ class Machine:
         for socket in list(self.sockets):
             asyncio.run_coroutine_threadsafe(socket.send_json(message), self.loop).result(5)
 
+    def show(self, key: str, **fields: Any) -> None:
+        """Changes an item of the view, and tells it."""
+        (item,) = (item for item in self.view or [] if item["key"] == key)
+        item.update(fields)
+        self.say({"type": "view", "items": self.view})
+
     def cut(self) -> None:
         """Closes every page's socket."""
         for socket in list(self.sockets):
@@ -230,6 +311,7 @@ class Machine:
             return
         await socket.accept()
         self.sockets.add(socket)
+        await socket.send_json({"type": "view", "items": self.view})
         sender = asyncio.create_task(self._send_states(socket))
         try:
             while True:

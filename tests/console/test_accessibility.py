@@ -28,9 +28,9 @@ def test_axe_finds_nothing(
     page = open_page(*size, color_scheme=theme, reduced_motion="reduce")
     page.wait_for_timeout(100)
     tabs = (
-        ["#setup-toggle"]
+        ["#setup-toggle", "#view-toggle"]
         if size[0] > 720
-        else [".tabs [data-view=pose]", ".tabs [data-view=setup]"]
+        else [f".tabs [data-view={view}]" for view in ("pose", "setup", "view")]
     )
     for click in [None, *tabs]:
         if click is not None:

@@ -25,6 +25,7 @@ from deltaviz.machine.mode import Mode
 from deltaviz.machine.snapshot import LinkPhase, LinkStatus, Snapshot
 from deltaviz.robots import Robot, load_robot
 from deltaviz.robots.load import Loaded
+from deltaviz.scene.items import AnyItem
 from deltaviz.web.app import create_app
 from deltaviz.web.listening import listen
 from deltaviz.web.origin import allowed_hosts
@@ -112,6 +113,9 @@ class FakeScene:
     def __init__(self) -> None:
         self.yaw: float | None = None
         self.themes: list[tuple[str, bool]] = []
+        self.shown: dict[str, tuple[AnyItem, ...]] = {}
+        self.chosen: list[tuple[str, str, object]] = []
+        self.refusal: str | None = None
         self.visitors: list[str | None] = []
         self.holds_control: Callable[[str], bool] = lambda session: False
 
@@ -141,6 +145,14 @@ class FakeScene:
 
     def set_theme(self, session: str, dark: bool) -> None:
         self.themes.append((session, dark))
+
+    def items(self, session: str) -> tuple[AnyItem, ...] | None:
+        return self.shown.get(session)
+
+    def choose(self, session: str, key: str, value: object, refused: Callable[[str], None]) -> None:
+        self.chosen.append((session, key, value))
+        if self.refusal is not None:
+            refused(self.refusal)
 
 
 @pytest.fixture(scope="session")

@@ -133,6 +133,27 @@ def test_the_theme_is_the_scene_s(page: Page, scene: Any, machine: Any) -> None:
     assert machine.told == []
 
 
+@pytest.mark.parametrize("value", [True, False, 0, -12.5, "", "0 0 -300"])
+def test_what_the_view_is_to_show_is_chosen_in_the_scene(
+    page: Page, scene: Any, machine: Any, value: object
+) -> None:
+    page.says({"type": "show", "item": "Workspace: Reach", "value": value})
+    ((session, key, chosen),) = scene.chosen
+    assert (session, key) == ("me", "Workspace: Reach")
+    assert chosen == value
+    assert isinstance(chosen, bool) == isinstance(value, bool)
+    assert page.told_back == []
+    assert machine.told == []
+
+
+def test_what_the_scene_does_not_take_is_refused_with_its_words(page: Page, scene: Any) -> None:
+    scene.refusal = "The scene is not open."
+    page.says({"type": "show", "item": "Workspace: Reach", "value": True})
+    (told,) = page.told_back
+    assert (told["type"], told["to"]) == ("refused", "show")
+    assert told["detail"] == "The scene is not open."
+
+
 def test_a_refusal_comes_back_with_what_it_answers(page: Page, machine: Any) -> None:
     machine.answer = Refused(RefusalKind.CONTROL, "Another page controls the robot.")
     page.says(START)
@@ -192,6 +213,15 @@ MALFORMED: list[tuple[str | None, str]] = [
     ('{"type": "override"}', "value"),
     ('{"type": "control", "action": "steal"}', "action"),
     ('{"type": "theme", "dark": 1}', "dark"),
+    ('{"type": "show", "item": "Reach"}', "value"),
+    ('{"type": "show", "item": "Reach", "value": null}', "value"),
+    ('{"type": "show", "item": "Reach", "value": NaN}', "value"),
+    ('{"type": "show", "item": "Reach", "value": Infinity}', "value"),
+    ('{"type": "show", "item": "Reach", "value": [1]}', "value"),
+    (json.dumps({"type": "show", "item": "Point", "value": "1" * 201}), "value"),
+    ('{"type": "show", "item": "", "value": true}', "item"),
+    (json.dumps({"type": "show", "item": "a" * 81, "value": True}), "item"),
+    ('{"type": "show", "item": 3, "value": true}', "item"),
     ('{"type": "jog_end", "id": "' + "a" * MAX_MESSAGE + '"}', "KiB"),
 ]
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import dataclasses
 import json
 import socket
 import threading
@@ -17,6 +18,8 @@ from websockets.sync.client import ClientConnection
 
 from deltaviz.machine.intent import ClientGone, ClientHere, Enable, JogStart, RefusalKind, Refused
 from deltaviz.machine.mode import Mode
+from deltaviz.scene.items import Readout, Toggle
+from deltaviz.scene.rows import ColourKey, Row
 from deltaviz.web.conversation import MAX_MESSAGE
 from deltaviz.web.socket import STATE_PERIOD
 
@@ -81,6 +84,33 @@ def test_the_scene_s_frames_belong_to_the_page(live: Any, machine: Any, scene: A
     machine.show(holder=session)
     assert scene.holds_control(session)
     assert not scene.holds_control("another")
+
+
+def test_the_view_is_told_when_it_changes(live: Any, scene: Any, eventually: Any) -> None:
+    page = live.page()
+    session = page.split("=")[1]
+    rows = (Row("Reach: 31 l", dot=(1, 2, 3)), ColourKey("Resolution", "1", "2", ((0, 0, 0),)))
+    toggle = Toggle("Workspace: Reach", "Workspace", "Reach", False)
+    scene.shown[session] = (toggle, Readout("Workspace: told", "Workspace", rows))
+    with live.socket(page) as connection:
+        first, second = receive(connection, "view")["items"]
+        assert first == {
+            "kind": "toggle",
+            "key": "Workspace: Reach",
+            "group": "Workspace",
+            "label": "Reach",
+            "value": False,
+        }
+        assert second["rows"] == [
+            {"kind": "row", "text": "Reach: 31 l", "value": "", "dot": [1, 2, 3]},
+            {"kind": "colours", "name": "Resolution", "low": "1", "high": "2", "stops": [[0] * 3]},
+        ]
+        kinds = [json.loads(connection.recv(timeout=20))["type"] for _ in range(10)]
+        assert kinds == ["state"] * 10  # nothing new, nothing said
+        scene.shown[session] = (dataclasses.replace(toggle, value=True),)
+        assert receive(connection, "view")["items"][0]["value"] is True
+        del scene.shown[session]
+        assert receive(connection, "view")["items"] is None
 
 
 def test_the_last_socket_of_a_page_takes_it_along(live: Any, machine: Any, eventually: Any) -> None:

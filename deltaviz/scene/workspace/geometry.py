@@ -5,19 +5,18 @@ Its inputs change a draft of this browser's and nothing else: no intent is ever 
 
 from __future__ import annotations
 
-import html
 import shlex
 from collections.abc import Callable
 from pathlib import Path
 
-from viser import ClientHandle, GuiButtonHandle, GuiSliderHandle
+from viser import ClientHandle, GuiSliderHandle
 
 from deltaviz.robots import Robot, RobotFileError
 from deltaviz.robots.draft import Draft, Made, Parameter
 from deltaviz.robots.errors import Faulty
 from deltaviz.robots.load import Loaded, parse_robot
-from deltaviz.scene.controls import Controls, Judgement
-from deltaviz.scene.workspace.inputs import by_a_person
+from deltaviz.scene.controls import Judgement
+from deltaviz.scene.inputs import Inputs
 from deltaviz.scene.workspace.saving import save_new
 
 _NOTE = (
@@ -34,31 +33,29 @@ class Geometry:
     def __init__(
         self,
         client: ClientHandle,
-        controls: Controls,
+        inputs: Inputs,
         loaded: Loaded,
         values: dict[str, float],
         *,
         changed: Callable[[], None],
         may_save: bool,
     ) -> None:
-        self._controls = controls
+        self._inputs = inputs
         self._loaded, self._values = loaded, values
         self._changed = changed
         self._draft = Draft(loaded.text)
         self._made: Made | None = None  # the last that was possible
         self._problem: str | None = None
         self._sliders: dict[str, GuiSliderHandle[float]] = {}
-        gui = client.gui
-        self._folder = gui.add_folder("Geometry", expand_by_default=False)
+        self._folder = client.gui.add_folder("Geometry", expand_by_default=False)
         with self._folder:
-            self._box = gui.add_html("")
+            self._readout = inputs.readout("Note", lines=_LINES)
             for parameter in self._draft.parameters:
-                self._add_slider(client, parameter)
-            back = gui.add_button("Back to the robot's own", color="gray")
-            self._save = gui.add_button("Save as robot file", disabled=not may_save)
-        self._buttons = (back, self._save)
-        self._add_button(back, self._reset, Judgement.SHOWS)
-        self._add_button(self._save, self._save_file, Judgement.STEERS)
+                self._add_slider(parameter)
+            inputs.button("Back to the robot's own", self._reset, Judgement.SHOWS, quiet=True)
+            self._save = inputs.button(
+                "Save as robot file", self._save_file, Judgement.STEERS, disabled=not may_save
+            )
         self._make()
 
     @property
@@ -85,23 +82,14 @@ class Geometry:
             self._save.disabled = not may_steer
 
     def remove(self) -> None:
-        self.retire()
+        self._inputs.remove()
         self._folder.remove()
 
     def retire(self) -> None:
-        for handle in (*self._sliders.values(), *self._buttons):
-            self._controls.retire(handle)
+        self._inputs.retire()
 
-    def _add_slider(self, client: ClientHandle, parameter: Parameter) -> None:
+    def _add_slider(self, parameter: Parameter) -> None:
         field = parameter.field
-        slider = client.gui.add_slider(
-            parameter.name,
-            min=parameter.low,
-            max=parameter.high,
-            step=parameter.step,
-            initial_value=self._values.get(field, parameter.shown),
-        )
-        self._controls.add_slider(slider, Judgement.SHOWS)
 
         def move(value: float) -> None:
             if abs(value - parameter.shown) < parameter.step / 2:
@@ -110,14 +98,13 @@ class Geometry:
                 self._values[field] = value
             self._change()
 
-        slider.on_update(by_a_person(move))
-        self._sliders[field] = slider
-
-    def _add_button(
-        self, button: GuiButtonHandle, press: Callable[[], None], judgement: Judgement
-    ) -> None:
-        self._controls.add_button(button, judgement)
-        button.on_click(by_a_person(lambda _: press()))
+        self._sliders[field] = self._inputs.slider(
+            parameter.name,
+            (parameter.low, parameter.high),
+            self._values.get(field, parameter.shown),
+            move,
+            step=parameter.step,
+        )
 
     def _reset(self) -> None:
         self._values.clear()
@@ -135,17 +122,10 @@ class Geometry:
             self._made = self._draft.made(self._values) if self._values else None
         except Faulty as error:
             self._problem = str(error)
-        self._tell(_NOTE if self._problem is None else f"No robot: {self._problem}.")
-
-    def _tell(self, *lines: str) -> None:
-        body = "".join(f"<div>{html.escape(line)}</div>" for line in lines)
-        self._box.content = (
-            f"<div style='font-size:12px;line-height:1.4;padding:4px 8px;overflow-wrap:anywhere;"
-            f"min-height:calc({_LINES} * 1.4em + 8px)'>{body}</div>"
-        )
+        self._readout.show(_NOTE if self._problem is None else f"No robot: {self._problem}.")
 
     def _save_file(self) -> None:
-        self._tell(*self._write())
+        self._readout.show(*self._write())
 
     def _write(self) -> tuple[str, ...]:
         """What became of it."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from deltaviz.scene.rows import ColourKey
 from deltaviz.scene.units import Array
 
 PLAIN = "One colour"
@@ -57,6 +58,8 @@ def coloured(share: Array) -> NDArray[np.uint8]:
     return np.stack(bands, axis=-1).astype(np.uint8)
 
 
-def css_gradient() -> str:
-    stops = ", ".join(f"rgb({r},{g},{b})" for r, g, b in _STOPS.tolist())
-    return f"linear-gradient(90deg, {stops})"
+def colour_key(measure: Measure, ends: tuple[float, float]) -> ColourKey:
+    low, high = (f"{end:.3g}" for end in ends)
+    unit = f", {measure.unit}" if measure.unit else ""
+    stops = tuple((r, g, b) for r, g, b in _STOPS.tolist())
+    return ColourKey(f"{measure.name}{unit}", low, high, stops)

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import asyncio
-import html
 from dataclasses import dataclass
 
-import viser
-
 from deltaviz.robots import Robot
+from deltaviz.scene.inputs import Inputs
 from deltaviz.scene.workspace.draw import Drawing
-from deltaviz.scene.workspace.inputs import Inputs
 from deltaviz.scene.workspace.laying import Lay, Serve
 from deltaviz.scene.workspace.objects import Kind, Thing
 from deltaviz.scene.workspace.orders import Topical
@@ -60,7 +57,7 @@ class ObjectShown:
         self._level = inputs.slider("mm at Z", heights, level, self._set_level)
         self._width = inputs.slider("mm wide", SIZES, choices.width, self._set_width, step=10.0)
         self._depth = inputs.slider("mm deep", SIZES, choices.depth, self._set_depth, step=10.0)
-        self._readout: viser.GuiHtmlHandle = inputs.readout()
+        self._readout = inputs.readout("Object told")
         self._order()
 
     def take(self, picture: Picture) -> None:
@@ -70,10 +67,10 @@ class ObjectShown:
             case Laid(section, text):
                 self._drawing.object(section)
                 self._fit_slider(section)
-                self._tell(text)
+                self._readout.show(text)
                 self._prove_soon(section.level)
             case Served(text) | Failed(text):
-                self._tell(text)
+                self._readout.show(text)
             case _:
                 return
 
@@ -124,10 +121,10 @@ class ObjectShown:
         if kind is Kind.NONE:
             self._quick(TOPIC, None)
             self._drawing.object(None)
-            self._tell("")
+            self._readout.show()
         else:
-            if not self._readout.content:
-                self._tell("Computing …")
+            if not self._readout.rows:
+                self._readout.show("Computing …")
             self._quick(TOPIC, Lay(self._robot, self._thing, self._choices.level))
 
     def _fit_slider(self, section: Section) -> None:
@@ -151,9 +148,3 @@ class ObjectShown:
             self._proving.cancel()
             self._proving = None
         self._patient(PROOF, None)
-
-    def _tell(self, text: str) -> None:
-        content = (
-            f"<div style='font-size:12px;line-height:1.4;padding:4px 8px'>{html.escape(text)}</div>"
-        )
-        self._readout.content = content if text else ""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 import re
 from dataclasses import dataclass
 
@@ -13,9 +12,9 @@ from viser import SceneClickEvent
 from deltaviz.robots import Robot
 from deltaviz.robots.coordinates import is_planar
 from deltaviz.scene import colours
+from deltaviz.scene.inputs import Inputs
 from deltaviz.scene.units import metres, millimetres
 from deltaviz.scene.workspace.hits import Surfaces
-from deltaviz.scene.workspace.inputs import Inputs
 from deltaviz.scene.workspace.orders import Topical
 from deltaviz.scene.workspace.pictures import Failed, Picture, Probed
 from deltaviz.scene.workspace.probing import Point, Probe, told
@@ -65,7 +64,7 @@ class ProbeShown:
         self._point: Point | None = None
         inputs.toggle("Probe", choices.on, self._set_on)
         self._place = inputs.line("Point", self._typed, hint=HINT)
-        self._readout: viser.GuiHtmlHandle = inputs.readout()
+        self._readout = inputs.readout("Probe told")
         self._follow()
 
     def take(self, picture: Picture) -> None:
@@ -73,9 +72,9 @@ class ProbeShown:
             return
         match picture:
             case Probed():
-                self._readout.content = _table(told(picture))
+                self._readout.show(*told(picture))
             case Failed(text):
-                self._tell(text)
+                self._readout.show(text)
             case _:
                 return
 
@@ -107,7 +106,7 @@ class ProbeShown:
         if not on:
             self._place.value = ""
         self._forget()
-        self._tell(HINT if on else "")
+        self._readout.show(HINT if on else "")
 
     def _listen(self, wanted: bool) -> None:
         if wanted and not self._listening:
@@ -129,16 +128,16 @@ class ProbeShown:
         point = parsed(text)
         if point is None:
             self._forget()
-            self._tell("Three numbers are needed, X Y Z in mm." if text.strip() else HINT)
+            self._readout.show("Three numbers are needed, X Y Z in mm." if text.strip() else HINT)
         elif is_planar(self._robot) and point[1] != 0.0:
             self._forget()
-            self._tell("Y must be 0, as this robot moves in a plane.")
+            self._readout.show("Y must be 0, as this robot moves in a plane.")
         else:
             self._probe(point)
 
     def _probe(self, point: Point) -> None:
         if self._mark is None:
-            self._tell("Computing …")
+            self._readout.show("Computing …")
         self._point = point
         self._draw(point)
         self._quick(TOPIC, Probe(self._robot, point))
@@ -169,9 +168,6 @@ class ProbeShown:
             node.remove()
         self._mark = self._point = None
 
-    def _tell(self, text: str) -> None:
-        self._readout.content = _table([(text, "")]) if text else ""
-
 
 def parsed(text: str) -> Point | None:
     """Three finite numbers that spaces, commas or semicolons stand between; else None."""
@@ -183,19 +179,3 @@ def parsed(text: str) -> Point | None:
         return None  # a NaN is no more than anything
     x, y, z = values
     return x, y, z
-
-
-def _table(rows: list[tuple[str, str]]) -> str:
-    """A row without a value is a sentence."""
-    lines = []
-    for name, value in rows:
-        name, value = html.escape(name), html.escape(value)
-        if value:
-            name = f"<span>{name}</span><span style='text-align:right'>{value}</span>"
-        lines.append(
-            f"<div style='display:flex;justify-content:space-between;gap:12px'>{name}</div>"
-        )
-    return (
-        "<div style='font-size:12px;line-height:1.4;padding:4px 8px;"
-        f"font-variant-numeric:tabular-nums'>{''.join(lines)}</div>"
-    )

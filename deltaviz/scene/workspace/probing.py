@@ -12,6 +12,7 @@ from deltaviz.mechanism.margin import Margin, MarginKind
 from deltaviz.robots import Robot
 from deltaviz.robots.coordinates import in_robot, in_space
 from deltaviz.robots.workspace import Limit, Margins, quality
+from deltaviz.scene.rows import Row
 from deltaviz.scene.workspace.pictures import Probed, Skill
 
 Point = tuple[float, float, float]
@@ -79,20 +80,20 @@ def _begun(text: str) -> str:
     return text[0].upper() + text[1:]
 
 
-def told(probed: Probed) -> list[tuple[str, str]]:
-    """(what, its value), for a panel; a sentence has no value."""
-    rows = [("Tip", "  ".join(f"{a} {v:.1f}" for a, v in zip("XYZ", probed.xyz, strict=True)))]
+def told(probed: Probed) -> list[Row]:
+    """In words, for a panel."""
+    rows = [Row("Tip", "  ".join(f"{a} {v:.1f}" for a, v in zip("XYZ", probed.xyz, strict=True)))]
     if probed.theta_deg is not None:
         names = (f"θ{arm + 1} {angle:.2f}°" for arm, angle in enumerate(probed.theta_deg))
-        rows.append(("Angles", "  ".join(names)))
+        rows.append(Row("Angles", "  ".join(names)))
     sentences = probed.why_not or ("Within reach and all limits. The nearest:",)
-    rows += [(sentence, "") for sentence in sentences]
-    rows += [(_begun(name), f"{away:.1f} mm") for name, away in probed.nearest]
+    rows += [Row(sentence) for sentence in sentences]
+    rows += [Row(_begun(name), f"{away:.1f} mm") for name, away in probed.nearest]
     if probed.skill is not None:
         skill = probed.skill
         rows += [
-            ("Conditioning", f"{skill.condition:.2f}"),
-            ("Resolution", f"{skill.resolution:.3f} mm per microstep"),
-            ("Speed", f"{skill.slowest:.0f} to {skill.fastest:.0f} mm/s per rad/s"),
+            Row("Conditioning", f"{skill.condition:.2f}"),
+            Row("Resolution", f"{skill.resolution:.3f} mm per microstep"),
+            Row("Speed", f"{skill.slowest:.0f} to {skill.fastest:.0f} mm/s per rad/s"),
         ]
     return rows

@@ -10,10 +10,10 @@ from viser import GuiSliderHandle
 
 from deltaviz.robots import Robot
 from deltaviz.robots.coordinates import is_planar
+from deltaviz.scene.inputs import Inputs
 from deltaviz.scene.workspace import tasks
 from deltaviz.scene.workspace.draw import Drawing
 from deltaviz.scene.workspace.grips import Grips
-from deltaviz.scene.workspace.inputs import Inputs
 from deltaviz.scene.workspace.orders import Topical
 from deltaviz.scene.workspace.outer import roughly
 from deltaviz.scene.workspace.pictures import NoSection, Section

@@ -13,12 +13,13 @@ from viser import ClientHandle
 from deltaviz.robots.coordinates import is_planar
 from deltaviz.robots.load import Loaded
 from deltaviz.scene.controls import Controls
+from deltaviz.scene.equals import Equals
+from deltaviz.scene.inputs import Inputs
 from deltaviz.scene.workspace import tasks
 from deltaviz.scene.workspace.arms_outline import arms_outline
 from deltaviz.scene.workspace.compared import OwnSize
 from deltaviz.scene.workspace.draw import Drawing
 from deltaviz.scene.workspace.geometry import Geometry
-from deltaviz.scene.workspace.inputs import Inputs
 from deltaviz.scene.workspace.measures import NAMES, PLAIN
 from deltaviz.scene.workspace.newest import Newest
 from deltaviz.scene.workspace.object_shown import Laying, ObjectShown
@@ -36,7 +37,7 @@ from deltaviz.scene.workspace.pictures import (
 from deltaviz.scene.workspace.probe_shown import ProbeShown, Probing
 from deltaviz.scene.workspace.sections_shown import Cutting, SectionsShown
 from deltaviz.scene.workspace.singular import Near
-from deltaviz.scene.workspace.text import Told
+from deltaviz.scene.workspace.text import LINES, Told
 
 REST = 0.25  # s after the last change, when what takes longer is ordered
 
@@ -66,6 +67,7 @@ class WorkspaceShown:
         self,
         client: ClientHandle,
         controls: Controls,
+        equals: Equals,
         choices: Choices,
         loaded: Loaded,
         *,
@@ -74,6 +76,7 @@ class WorkspaceShown:
     ) -> None:
         self._client = client
         self._controls = controls
+        self._equals = equals
         self._choices = choices
         self._quick = Newest(lambda topic, task: quick((client.client_id, topic), task))
         self._patient = lambda topic, task: patient((client.client_id, topic), task)
@@ -157,11 +160,11 @@ class WorkspaceShown:
             self._probe = self._added_probe()  # at the top, to be seen while clicking
             self._inputs = self._added_inputs()
             self._sections = self._added_sections()
-            self._readout = self._client.gui.add_html("")
+            self._readout = self._inputs.readout("Reach told", lines=LINES)
             self._object = None if is_planar(robot) else self._added_object()
             self._geometry = Geometry(
                 self._client,
-                self._controls,
+                self._own_inputs("Geometry"),
                 loaded,
                 self._choices.geometry,
                 changed=self._design,
@@ -180,7 +183,6 @@ class WorkspaceShown:
             part.remove()
         self._drawing.clear()
         self._inputs.remove()
-        self._readout.remove()
         self._geometry.remove()
 
     # The panel's inputs.
@@ -189,8 +191,8 @@ class WorkspaceShown:
     def _parts(self) -> list[ProbeShown | SectionsShown | ObjectShown]:
         return [p for p in (self._probe, self._sections, self._object) if p is not None]
 
-    def _own_inputs(self) -> Inputs:
-        return Inputs(self._client.gui, self._controls)
+    def _own_inputs(self, group: str = "Workspace") -> Inputs:
+        return Inputs(group, self._client.gui, self._controls, self._equals)
 
     def _added_inputs(self) -> Inputs:
         inputs, choices = self._own_inputs(), self._choices
@@ -374,6 +376,4 @@ class WorkspaceShown:
     def _tell(self) -> None:
         of_skin = self._told.skin.scale if self._told.skin is not None else None
         self._told.scale = of_skin or (self._sections.scale if self._sections.any else None)
-        content = self._told.html()
-        if self._readout.content != content:
-            self._readout.content = content
+        self._readout.show_all(self._told.rows())

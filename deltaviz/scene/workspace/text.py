@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import html
 import math
 from dataclasses import dataclass, field
 
 from deltaviz.scene import colours
+from deltaviz.scene.rows import ColourKey, Row, Rows
 from deltaviz.scene.workspace.compared import OwnSize, size_told
-from deltaviz.scene.workspace.measures import PLAIN, css_gradient, measure_named
+from deltaviz.scene.workspace.measures import PLAIN, colour_key, measure_named
 from deltaviz.scene.workspace.pictures import Fitted, Singularities, Skin, Surface
 
 _NAMES = {
@@ -21,7 +21,7 @@ _KINDS = (
     ("Type 1", "an arm straight or folded: the end of what the arms reach"),
     ("Type 2", "the forearms hold the effector no more"),
 )
-_LINES = 3  # always there, so that what is below does not jump
+LINES = 3  # always there, so that what is below does not jump
 
 
 @dataclass
@@ -38,15 +38,8 @@ class Told:
     own: OwnSize | None = None  # what the reach is compared with
     waiting: set[str] = field(default_factory=set[str])
 
-    def html(self) -> str:
-        lines = [html.escape(line) for line in self.lines()]
-        body = "".join(f"<div>{line}</div>" for line in lines)
-        body += self._singular() + self._key()
-        return (
-            "<div style='font-size:12px;line-height:1.4;padding:4px 8px;"
-            f"min-height:calc({_LINES} * 1.4em + 8px);"
-            f"font-variant-numeric:tabular-nums'>{body}</div>"
-        )
+    def rows(self) -> Rows:
+        return (*map(Row, self.lines()), *self._singular(), *self._key())
 
     def lines(self) -> list[str]:
         lines = [self.problem] if self.problem else []
@@ -76,28 +69,22 @@ class Told:
             return f"No {name} fits."
         return f"Largest {fitted.shape}."
 
-    def _singular(self) -> str:
+    def _singular(self) -> list[Row]:
         if self.singular is None:
-            return ""
-        lines: list[str] = []
+            return []
         surfaces = (self.singular.type_1, self.singular.type_2)
-        for (name, what), surface, colour in zip(_KINDS, surfaces, colours.SINGULAR, strict=True):
-            dot = f"<span style='color:rgb{colour}'>■</span> "
-            lines.append(f"<div>{dot}{name} ({what}): {how_near(surface)}</div>")
-        return "".join(lines)
+        return [
+            Row(f"{name} ({what}): {how_near(surface)}", dot=colour)
+            for (name, what), surface, colour in zip(
+                _KINDS, surfaces, colours.SINGULAR, strict=True
+            )
+        ]
 
-    def _key(self) -> str:
+    def _key(self) -> list[ColourKey]:
         measure = measure_named(self.measure)
         if measure is None or self.scale is None:
-            return ""
-        unit = f", {measure.unit}" if measure.unit else ""
-        low, high = (f"{end:.3g}" for end in self.scale)
-        return (
-            f"<div style='margin-top:6px'>{measure.name}{unit}</div>"
-            f"<div style='height:10px;border-radius:3px;background:{css_gradient()}'></div>"
-            "<div style='display:flex;justify-content:space-between'>"
-            f"<span>{low}</span><span>{high}</span></div>"
-        )
+            return []
+        return [colour_key(measure, self.scale)]
 
 
 def how_near(surface: Surface | None) -> str:
