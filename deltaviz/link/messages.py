@@ -231,6 +231,8 @@ class Segment:
     Refused, and nothing else happens: not ARMED, another epoch, an index that is not the next one,
     no place in the queue (send it again). Everything else that is wrong with a segment brakes,
     drops the queue and halts with BAD_SEGMENT; a `seen` too old for a motion to begin: with LEASE.
+    Where an epoch began outside a limit it may lead no further out than that, and the tool tip
+    no further out than it has come in since.
     """
 
     epoch: int

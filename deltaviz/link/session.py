@@ -111,8 +111,10 @@ class Session:
     @property
     def never_began(self) -> bool:
         """A motion was lost on its way to the board, for so long that it must not begin."""
-        flight, telemetry = self.flight, self.telemetry
-        return flight is not None and telemetry is not None and flight.never_began(telemetry)
+        board, telemetry = self.board, self.telemetry
+        if board is None or telemetry is None:
+            return False
+        return self._under_way.never_began(telemetry, board.tick_hz)
 
     @property
     def lossy(self) -> bool:
@@ -230,7 +232,7 @@ class Session:
 
     def home(self, now: float) -> None:
         """Begin homing, which needs a live lease as any motion does. Not while stopping."""
-        self._under_way.home()
+        self._under_way.home(self.telemetry)
         if self.telemetry is not None:
             self._out.append(m.Keep(self.telemetry.now))
             self._kept = now

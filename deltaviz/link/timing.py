@@ -24,6 +24,7 @@ KEEP_PERIOD: Final = 0.025  # well within the board's lease
 SEGMENT_REPEAT: Final = 0.025  # board time: a round trip, and a link's hiccup
 GAP_REPEAT: Final = 0.008  # board time: the board has said so, but may not have met the repetition
 NOT_BEGUN: Final = 0.1  # board time: well before the board would think it too late to begin
+HOME_NOT_BEGUN: Final = 0.2  # board time: a few repetitions, while who pressed still looks at it
 LOSSY_FOR: Final = 0.2  # board time: more than the longest horizon
 NEVER_ARMED: Final = 0.1  # board time after a stop: an Arm before it has come by then or was lost
 
@@ -50,6 +51,8 @@ TIMEOUTS: Final = (
     Timeout(GAP_REPEAT, "the same, when the board has refused a later one (INDEX)",
             "it and all after it are sent again"),
     Timeout(NOT_BEGUN, "the first segment from rest, by the board's clock, if it is not taken",
+            "Stop is sent: it is too late to begin"),
+    Timeout(HOME_NOT_BEGUN, "Home, by the board's clock, if no telemetry has shown it homing",
             "Stop is sent: it is too late to begin"),
     Timeout(NEVER_ARMED, "a Stop, by the board's clock",
             "an answer that names the epoch before counts, too: the Arm never came"),

@@ -6,7 +6,7 @@ from deltaviz.link import messages as m
 from deltaviz.link.flight import Flight
 from deltaviz.link.rules import since
 from deltaviz.link.session_states import MOTIONS, Motion, Turn
-from deltaviz.link.timing import NEVER_ARMED, STOP_REPEAT
+from deltaviz.link.timing import HOME_NOT_BEGUN, NEVER_ARMED, STOP_REPEAT
 
 _REPEATED: dict[Motion, m.HostMessage] = {
     Motion.STOPPING: m.Stop(),
@@ -28,6 +28,7 @@ class UnderWay:
         self._stopping_epoch: int | None = None
         self._stop_tick = 0
         self._seen_homing = False
+        self._home_tick = 0
 
     # What the host is asked for.
 
@@ -37,9 +38,10 @@ class UnderWay:
         self.lossy = False
         self.stopped = None
 
-    def home(self) -> None:
+    def home(self, telemetry: m.Telemetry | None) -> None:
         self._ask(Turn.HOME)
         self._seen_homing = False
+        self._home_tick = 0 if telemetry is None else telemetry.now
         self.stopped = None
 
     def disable(self) -> None:
@@ -105,6 +107,15 @@ class UnderWay:
             self._stopping_epoch = None
         if command in ("arm", "home"):
             self._happens(Turn.REFUSED)
+
+    def never_began(self, telemetry: m.Telemetry, tick_hz: int) -> bool:
+        """What was asked for has been on its way to the board for so long that it must not begin
+        any more: nobody would expect it."""
+        if self.flight is not None:
+            return self.flight.never_began(telemetry)
+        waited = since(telemetry.now, self._home_tick)
+        lost = self.state is Motion.HOMING and not self._seen_homing
+        return lost and waited >= HOME_NOT_BEGUN * tick_hz
 
     def _was_never_armed(self, telemetry: m.Telemetry, tick_hz: int) -> bool:
         """The stop overruled an Arm that was lost on its way: no answer will bear its epoch."""

@@ -35,7 +35,7 @@ class Guard:
         self._acceleration = tuple(limits.acceleration)
         self._theta = tuple(theta)
         self._rate = tuple(0.0 for _ in theta)
-        self._floor = self._margins((self._theta,))[0] if homed else np.empty(0)
+        self._floor = np.fmin(self._margins((self._theta,))[0], 0.0) if homed else np.empty(0)
 
     def refusal(self, knot: Knot) -> str | None:
         """Why `knot` must not be sent, or None: then it is the one that the next starts from."""
@@ -91,18 +91,19 @@ class Guard:
     def _illegal(self, knot: Knot) -> str | None:
         """Legality at the middle, at the end, and along the brake from the end.
 
-        Where the robot stands outside a limit, that limit must not get worse.
+        Where the epoch began outside a limit, that limit must not get worse, nor worse again than
+        it has become since: no number of knots creeps outwards by the slack of each.
         """
         poses = [self._middle(knot), knot.theta, *self._brake(knot)]
         margins = self._margins(poses)
-        floor = np.minimum(self._floor, 0.0) - MARGIN_SLACK
+        floor = self._floor - MARGIN_SLACK
         if np.isnan(margins).any():
             return "a pose in which the arms would change over or cannot meet"
         rows, columns = np.nonzero(margins < floor)
         if len(rows):
             what = "brake" if rows[0] > 1 else "segment"
             return f"a {what} that breaks {self._robot.margin_names[int(columns[0])]}"
-        self._floor = margins[1]
+        self._floor = np.maximum(self._floor, np.minimum(margins[1], 0.0))
         return None
 
     def _middle(self, knot: Knot) -> tuple[float, ...]:

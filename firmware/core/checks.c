@@ -72,7 +72,7 @@ static struct dv_objection joint_objection(const struct motion *motion)
     return dv_no_objection();
 }
 
-static float outside(const struct motion *motion, const float from_start[DV_ARMS_MAX])
+static float outside_at(const struct motion *motion, const float from_start[DV_ARMS_MAX])
 {
     float microsteps[DV_ARMS_MAX];
     for (int i = 0; i < motion->parameters->arms; i++) {
@@ -81,12 +81,11 @@ static float outside(const struct motion *motion, const float from_start[DV_ARMS
     return dv_arms_outside(motion->parameters, microsteps);
 }
 
-static struct dv_objection workspace_objection(const struct motion *motion)
+static struct dv_objection workspace_objection(const struct motion *motion, float allowed)
 {
     if (motion->parameters->arms == 0) {
         return dv_no_objection();
     }
-    static const float START[DV_ARMS_MAX] = {0.0f};
     float middle[DV_ARMS_MAX], end[DV_ARMS_MAX], halfway[DV_ARMS_MAX];
     for (int i = 0; i < motion->parameters->arms; i++) {
         middle[i] = dv_real_cubic_position(&motion->cubic[i], 0.5f);
@@ -94,14 +93,8 @@ static struct dv_objection workspace_objection(const struct motion *motion)
         halfway[i] = end[i] + (motion->brake_end[i] - end[i]) * 0.75f; /* of the brake's time */
     }
     const float *const poses[] = {middle, end, halfway, motion->brake_end};
-    float allowed = -1.0f; /* not known yet */
     for (int i = 0; i < 4; i++) {
-        float far = outside(motion, poses[i]);
-        if (far <= DV_TIP_SLACK + DV_TIP_ERROR) {
-            continue;
-        }
-        allowed = allowed < 0.0f ? outside(motion, START) : allowed;
-        if (far > allowed + DV_TIP_SLACK + DV_TIP_ERROR) {
+        if (outside_at(motion, poses[i]) > allowed + DV_TIP_SLACK + DV_TIP_ERROR) {
             return dv_object(i < 2 ? DV_REFUSAL_WORKSPACE : DV_REFUSAL_BRAKE, -1);
         }
     }
@@ -110,7 +103,7 @@ static struct dv_objection workspace_objection(const struct motion *motion)
 
 struct dv_objection dv_check_segment(const struct dv_parameters *parameters, uint32_t tick_hz,
                                      const struct dv_knot *start, const struct dv_knot *end,
-                                     uint32_t ticks, bool homed)
+                                     uint32_t ticks, bool homed, float outside)
 {
     struct motion motion = {.parameters = parameters, .start = start, .end = end};
     for (int i = 0; i < parameters->configure.joints; i++) {
@@ -123,5 +116,5 @@ struct dv_objection dv_check_segment(const struct dv_parameters *parameters, uin
     }
     find_brake_ends(&motion);
     found = joint_objection(&motion);
-    return found.reason != 0 ? found : workspace_objection(&motion);
+    return found.reason != 0 ? found : workspace_objection(&motion, outside);
 }

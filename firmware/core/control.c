@@ -92,6 +92,7 @@ void dv_control_open_epoch(struct dv_control *control, const struct dv_arm *arm)
     control->epoch = arm->epoch;
     control->cause = DV_CAUSE_NONE;
     dv_queue_open(&control->queue, arm->joints, arm->counts, arm->t_start, control->planned);
+    control->leeway = dv_leeway_at(&control->parameters, &control->queue.knot, control->homed);
     dv_control_change(control, DV_EVENT_ARM);
 }
 
@@ -99,6 +100,7 @@ void dv_control_enqueue(struct dv_control *control, const struct dv_span *span,
                         const struct dv_knot *origin)
 {
     dv_queue_push(&control->queue, span, origin, control->planned, dv_control_is_idle(control));
+    dv_leeway_come_to(&control->leeway, &control->parameters, &control->queue.knot);
 }
 
 /* Stops. */
@@ -189,7 +191,13 @@ static void look_at_switches(struct dv_control *control, uint8_t levels)
     control->reports->changed = control->reports->changed || pressed != control->switches;
     control->switches = pressed;
     control->looked = true;
-    if (newly != 0 && !dv_control_is_idle(control) && control->state != DV_STATE_HOMING) {
+    if (control->seeks || dv_control_is_idle(control)) {
+        return;
+    }
+    bool comes_from_one = control->state == DV_STATE_HOMING; /* on its way to the ready pose */
+    bool goes_on = control->state != DV_STATE_BRAKING
+        && dv_drive_leads_into(&control->drive, pressed);
+    if ((newly != 0 && !comes_from_one) || goes_on) {
         fail(control, DV_FAULT_LIMIT_SWITCH, DV_CAUSE_LIMIT_SWITCH);
     }
 }

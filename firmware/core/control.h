@@ -10,6 +10,7 @@
 #include "hal.h"
 #include "homing.h"
 #include "lease.h"
+#include "limits.h"
 #include "messages.h"
 #include "parameters.h"
 #include "queue.h"
@@ -24,6 +25,7 @@ struct dv_control {
     struct dv_reports *reports;
     struct dv_drive drive;
     struct dv_queue queue;
+    struct dv_leeway leeway; /* of the epoch */
     struct dv_lease lease;
     struct dv_homing homing;
     struct dv_parameters parameters; /* once it is configured */

@@ -133,6 +133,19 @@ void dv_drive_begin_piece(struct dv_drive *drive)
     drive->next_moves = false;
 }
 
+bool dv_drive_leads_into(const struct dv_drive *drive, uint32_t pressed)
+{
+    const struct dv_configure *configure = &drive->parameters->configure;
+    for (int joint = 0; joint < configure->joints; joint++) {
+        int64_t way = drive->target[joint] - drive->boundary[joint];
+        bool inwards = configure->homing_direction > 0 ? way > 0 : way < 0;
+        if (((pressed >> joint) & 1u) != 0 && inwards) {
+            return true;
+        }
+    }
+    return false;
+}
+
 bool dv_drive_plan(struct dv_drive *drive, uint32_t tick)
 {
     int64_t positions[DV_JOINTS_MAX], increments[DV_JOINTS_MAX] = {0};

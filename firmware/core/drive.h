@@ -60,6 +60,11 @@ void dv_drive_rest(struct dv_drive *drive);
 /* The stepper has taken over the planned piece. */
 void dv_drive_begin_piece(struct dv_drive *drive);
 
+/* A joint whose switch is `pressed` (a bit each) goes on towards its mechanical end. Where a piece
+ * begins.
+ */
+bool dv_drive_leads_into(const struct dv_drive *drive, uint32_t pressed);
+
 /* Until `tick`, one piece beyond the plan. False: the path leads nowhere there. */
 bool dv_drive_plan(struct dv_drive *drive, uint32_t tick);
 

@@ -3,8 +3,10 @@
 #include "floats.h"
 #include "integers.h"
 #include "kinematics.h"
+#include "tip.h"
 
 #include <math.h>
+#include <string.h>
 
 static const float P_STEP = 1.0f / 1024.0f; /* microsteps: the unit of a knot's position */
 
@@ -56,4 +58,32 @@ float dv_arms_outside(const struct dv_parameters *parameters, const float *micro
         theta[i] = microsteps[i] / parameters->configure.microsteps_per_rad[i];
     }
     return dv_forward(parameters, theta, tip) ? dv_tip_outside(parameters, tip) : INFINITY;
+}
+
+static float knot_outside(const struct dv_parameters *parameters, const struct dv_knot *knot)
+{
+    float place[DV_ARMS_MAX];
+    for (int i = 0; i < DV_ARMS_MAX; i++) {
+        place[i] = (float)knot->p[i] * (knot->cartesian ? DV_TIP_STEP : P_STEP);
+    }
+    return knot->cartesian ? dv_tip_outside(parameters, place) : dv_arms_outside(parameters, place);
+}
+
+struct dv_leeway dv_leeway_at(const struct dv_parameters *parameters, const struct dv_knot *knot,
+                              bool homed)
+{
+    struct dv_leeway leeway = {.outside = 0.0f};
+    memcpy(leeway.began, knot->p, sizeof leeway.began);
+    if (homed && parameters->arms > 0) {
+        leeway.outside = knot_outside(parameters, knot);
+    }
+    return leeway;
+}
+
+void dv_leeway_come_to(struct dv_leeway *leeway, const struct dv_parameters *parameters,
+                       const struct dv_knot *knot)
+{
+    if (leeway->outside > 0.0f) {
+        leeway->outside = fminf(leeway->outside, knot_outside(parameters, knot));
+    }
 }

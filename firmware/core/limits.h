@@ -9,6 +9,7 @@
 
 #include "messages.h"
 #include "parameters.h"
+#include "paths.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -47,6 +48,23 @@ struct dv_range dv_joint_range(const struct dv_parameters *parameters, int joint
 /* Where the brake ends that begins at `positions` with `speeds` (microsteps, s). */
 void dv_brake_ends(const struct dv_parameters *parameters, int joints, const float *positions,
                    const float *speeds, float *ends);
+
+/* How far out an epoch may lead that began outside its limits: no further than it began, the tip no
+ * further than it has come in since. It is kept for the whole epoch, so that no number of segments
+ * can creep outwards by the slack of each.
+ */
+struct dv_leeway {
+    int32_t began[DV_JOINTS_MAX]; /* 2^-10 microsteps */
+    float outside;                /* mm, of the tip; 0 inside its workspace */
+};
+
+/* Of an epoch that begins at rest at `knot`, of the joints. Until it is homed, no tip is known. */
+struct dv_leeway dv_leeway_at(const struct dv_parameters *parameters, const struct dv_knot *knot,
+                              bool homed);
+
+/* A segment leads to `knot`. */
+void dv_leeway_come_to(struct dv_leeway *leeway, const struct dv_parameters *parameters,
+                       const struct dv_knot *knot);
 
 /* How far the tool tip is outside its workspace (mm). */
 float dv_tip_outside(const struct dv_parameters *parameters, const float tip[3]);

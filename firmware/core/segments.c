@@ -50,13 +50,13 @@ static struct dv_objection objection(const struct dv_board *board, struct dv_spa
     }
     if (!span->knot.cartesian) {
         return dv_check_segment(&control->parameters, tick_hz, origin, &span->knot,
-                                span->duration, control->homed);
+                                span->duration, control->homed, control->leeway.outside);
     }
     for (int i = 3; i < DV_JOINTS_MAX; i++) {
         span->knot.p[i] = origin->p[i];
     }
     return dv_check_tip_segment(&control->parameters, tick_hz, origin, &span->knot,
-                                span->duration);
+                                span->duration, &control->leeway);
 }
 
 /* `fits`: it has a number for each joint. */

@@ -6,7 +6,6 @@
 #include <math.h>
 #include <string.h>
 
-static const float TIP_STEP = 1.0f / 256000.0f; /* mm: the unit of a Cartesian knot's position */
 static const float JOINT_STEPS = 1024.0f; /* to a microstep, of a joint knot's position */
 static const float MOST = 2147483520.0f; /* the largest float that is an int32_t */
 
@@ -23,7 +22,7 @@ bool dv_tip_knot(const struct dv_parameters *parameters, const struct dv_knot *j
     }
     *tip = (struct dv_knot){.cartesian = true};
     for (int i = 0; i < 3; i++) {
-        tip->p[i] = dv_to_integer(rintf(point[i] / TIP_STEP), MOST);
+        tip->p[i] = dv_to_integer(rintf(point[i] / DV_TIP_STEP), MOST);
     }
     for (int i = 3; beyond < parameters->configure.joints; i++, beyond++) {
         tip->p[i] = joints->p[beyond];
@@ -37,7 +36,7 @@ bool dv_joint_knot(const struct dv_parameters *parameters, const struct dv_knot 
     float theta[DV_ARMS_MAX], point[3];
     int beyond = parameters->arms;
     for (int i = 0; i < 3; i++) {
-        point[i] = (float)tip->p[i] * TIP_STEP;
+        point[i] = (float)tip->p[i] * DV_TIP_STEP;
     }
     if (!dv_inverse(parameters, point, theta)) {
         return false;
@@ -57,7 +56,7 @@ void dv_tip_motion(struct dv_tip_motion *motion, const struct dv_knot *start,
                    const struct dv_knot *end, uint32_t ticks, uint32_t tick_hz)
 {
     for (int i = 0; i < 3; i++) {
-        motion->start[i] = (float)start->p[i] * TIP_STEP;
+        motion->start[i] = (float)start->p[i] * DV_TIP_STEP;
         motion->axis[i] =
             dv_tip_cubic(start->p[i], end->p[i], start->v[i], end->v[i], ticks, tick_hz);
     }

@@ -12,6 +12,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#define DV_TIP_STEP (1.0f / 256000.0f) /* mm: the unit of a Cartesian knot's position */
+
 /* The Cartesian knot of a knot of the joints that rests. False: there is no tip. */
 bool dv_tip_knot(const struct dv_parameters *parameters, const struct dv_knot *joints,
                  struct dv_knot *tip);

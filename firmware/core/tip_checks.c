@@ -4,9 +4,7 @@
 #include "tip.h"
 
 #include <math.h>
-#include <string.h>
 
-static const float P_STEP = 1.0f / 256000.0f; /* mm: the unit of a knot's position */
 static const float V_STEP = 1.0f / 65536.0f; /* mm/s: the unit of its velocity */
 static const float ROOT_3 = 1.7320508f; /* of three coordinates that are each rounded */
 
@@ -20,7 +18,8 @@ struct judgement {
     struct dv_tip_motion motion;
     float a_rounding, v_rounding; /* mm/s², mm/s: of the tip */
     float allowed;                /* mm outside the workspace */
-    struct dv_joint_motion first[DV_ARMS_MAX], last[DV_ARMS_MAX];
+    const int32_t *began;         /* 2^-10 microsteps: where the epoch did */
+    struct dv_joint_motion last[DV_ARMS_MAX];
 };
 
 static float microsteps(const struct judgement *judgement, int joint, float angle)
@@ -33,15 +32,15 @@ static bool within(float value, float limit, float slack)
     return fabsf(value) <= limit * (1.0f + DV_RELATIVE_SLACK + RELATIVE_ERROR) + slack;
 }
 
-/* In its limits, or no further out than it began. */
+/* In its limits, or no further out than the epoch began; with a microstep of slack. */
 static bool in_range(const struct judgement *judgement, int joint, float position)
 {
     const struct dv_configure *configure = &judgement->parameters->configure;
-    float start = microsteps(judgement, joint, judgement->first[joint].angle);
+    float began = (float)judgement->began[joint] / 1024.0f;
     float low = (float)configure->joint_min[joint] / 1024.0f - 1.0f;
     float high = (float)configure->joint_max[joint] / 1024.0f + 1.0f;
-    return fminf(low, start) - DV_POSITION_ERROR <= position
-        && position <= fmaxf(high, start) + DV_POSITION_ERROR;
+    return fminf(low, began - 1.0f) - DV_POSITION_ERROR <= position
+        && position <= fmaxf(high, began + 1.0f) + DV_POSITION_ERROR;
 }
 
 static struct dv_objection joint_objection(const struct judgement *judgement)
@@ -65,7 +64,7 @@ static struct dv_objection joint_objection(const struct judgement *judgement)
     return dv_no_objection();
 }
 
-/* After the part `u` of the time, 0 first. */
+/* After the part `u` of the time. */
 static struct dv_objection look(struct judgement *judgement, float u)
 {
     float position[3], velocity[3], acceleration[3];
@@ -74,13 +73,9 @@ static struct dv_objection look(struct judgement *judgement, float u)
                           judgement->last)) {
         return dv_object(DV_REFUSAL_WORKSPACE, -1);
     }
-    float outside = dv_tip_outside(judgement->parameters, position);
-    if (u == 0.0f) {
-        memcpy(judgement->first, judgement->last, sizeof judgement->first);
-        judgement->allowed = outside + DV_TIP_SLACK + DV_TIP_ERROR;
-    }
     struct dv_objection found = joint_objection(judgement);
-    if (found.reason == 0 && outside > judgement->allowed) {
+    if (found.reason == 0
+        && dv_tip_outside(judgement->parameters, position) > judgement->allowed) {
         return dv_object(DV_REFUSAL_WORKSPACE, -1);
     }
     return found;
@@ -107,13 +102,15 @@ static struct dv_objection brake_objection(const struct judgement *judgement)
 
 struct dv_objection dv_check_tip_segment(const struct dv_parameters *parameters, uint32_t tick_hz,
                                          const struct dv_knot *start, const struct dv_knot *end,
-                                         uint32_t ticks)
+                                         uint32_t ticks, const struct dv_leeway *leeway)
 {
     float h = (float)ticks / (float)tick_hz;
     struct judgement judgement = {
         .parameters = parameters,
-        .a_rounding = ROOT_3 * (6.0f * P_STEP / (h * h) + 3.0f * V_STEP / h),
-        .v_rounding = ROOT_3 * (1.5f * P_STEP / h + V_STEP),
+        .a_rounding = ROOT_3 * (6.0f * DV_TIP_STEP / (h * h) + 3.0f * V_STEP / h),
+        .v_rounding = ROOT_3 * (1.5f * DV_TIP_STEP / h + V_STEP),
+        .allowed = leeway->outside + DV_TIP_SLACK + DV_TIP_ERROR,
+        .began = leeway->began,
     };
     uint32_t apart = DV_APART_MS * (tick_hz / 1000);
     uint32_t looks = (ticks + apart - 1) / apart;

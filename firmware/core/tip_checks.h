@@ -18,10 +18,10 @@
 #define DV_APART_MS 2u
 
 /* What is wrong with the way of `ticks` (4 to 50 ms) between two Cartesian knots, if anything; of a
- * homed robot with arms.
+ * homed robot with arms, in an epoch that has this leeway.
  */
 struct dv_objection dv_check_tip_segment(const struct dv_parameters *parameters, uint32_t tick_hz,
                                          const struct dv_knot *start, const struct dv_knot *end,
-                                         uint32_t ticks);
+                                         uint32_t ticks, const struct dv_leeway *leeway);
 
 #endif

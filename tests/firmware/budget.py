@@ -108,6 +108,7 @@ def homed_board(joints: int) -> SteppedBoard:
         board.press_switches(pressed)
         board.run(10)
         board.send(Keep(board.now))
+    board.press_switches(False)
     board.run(100)
     board.send(Keep(board.now))
     assert board.state() is BoardState.HALTED, board.telemetry

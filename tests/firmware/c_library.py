@@ -98,6 +98,14 @@ class CObjection(c.Structure):
     _fields_ = [("reason", c.c_uint8), ("joint", c.c_int8)]
 
 
+class CLeeway(c.Structure):
+    _fields_ = [("began", c.c_int32 * _JOINTS_MAX), ("outside", c.c_float)]
+
+    @classmethod
+    def of(cls, began: Sequence[int], outside: float) -> CLeeway:
+        return cls((c.c_int32 * _JOINTS_MAX)(*began), outside)
+
+
 class CRealCubic(c.Structure):
     _fields_ = [(name, c.c_float) for name in ("distance", "v0", "v1", "a0", "a1", "seconds")]
 
@@ -188,6 +196,7 @@ def check_segment(
     end: tuple[Sequence[int], Sequence[int]],
     ticks: int,
     homed: bool,
+    outside: float,
 ) -> tuple[int, int]:
     """(reason, joint): (0, -1) for a segment without fault."""
     found = _library().dv_check_segment(
@@ -197,6 +206,7 @@ def check_segment(
         c.byref(c_knot(*end)),
         c.c_uint32(ticks),
         c.c_bool(homed),
+        c.c_float(outside),
     )
     return found.reason, found.joint
 
@@ -208,6 +218,8 @@ def check_tip_segment(
     start: tuple[Sequence[int], Sequence[int]],
     end: tuple[Sequence[int], Sequence[int]],
     ticks: int,
+    began: Sequence[int],
+    outside: float,
 ) -> tuple[int, int]:
     """The same for Cartesian knots."""
     found = _library().dv_check_tip_segment(
@@ -216,6 +228,7 @@ def check_tip_segment(
         c.byref(c_knot(*start, cartesian=True)),
         c.byref(c_knot(*end, cartesian=True)),
         c.c_uint32(ticks),
+        c.byref(CLeeway.of(began, outside)),
     )
     return found.reason, found.joint
 

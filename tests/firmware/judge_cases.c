@@ -31,14 +31,18 @@ int main(void)
         uint64_t milliticks = (uint64_t)now.ticks * 1000;
         bool lasts = milliticks >= (uint64_t)now.tick_hz * DV_SEGMENT_MIN_MS
             && milliticks <= (uint64_t)now.tick_hz * DV_SEGMENT_MAX_MS;
+        struct dv_leeway leeway = dv_leeway_at(&parameters, &now.start, true);
+        dv_leeway_come_to(&leeway, &parameters, &now.end);
         dv_forward(&parameters, now.pose, result);
         dv_inverse(&parameters, now.pose, result);
         if (parameters.arms > 0 && lasts) {
-            dv_check_tip_segment(&parameters, now.tick_hz, &now.start, &now.end, now.ticks);
+            dv_check_tip_segment(&parameters, now.tick_hz, &now.start, &now.end, now.ticks,
+                                 &leeway);
         }
         for (int homed = 0; homed < 2 && lasts; homed++) {
             struct dv_objection found = dv_check_segment(&parameters, now.tick_hz, &now.start,
-                                                         &now.end, now.ticks, homed == 1);
+                                                         &now.end, now.ticks, homed == 1,
+                                                         leeway.outside);
             accepted += found.reason == 0;
         }
     }

@@ -105,6 +105,15 @@ class Player:
             self._inputs(joint, pressed, False)
             self.pair.advance(2 * self.pair.ms)
 
+    def _stand_on_switch(self, joint: int, ticks: int) -> None:
+        """Pressed before anything moves, as a broken wire reads."""
+        self._get_ready()
+        self._inputs(joint, True, False)
+        self.pair.advance(2 * self.pair.ms)
+        self._arm(1, 0)
+        self._move([5, -5], 10, 10, ticks)
+        self._inputs(joint, None, False)
+
     def _interrupt(self, ticks: int, command: HostMessage) -> None:
         """In the middle of a motion that begins here."""
         self._get_ready()
@@ -288,6 +297,7 @@ def _steps() -> st.SearchStrategy[tuple[Any, ...]]:
         step("interrupt", ticks, st.sampled_from([Stop(), Stop(), Enable(on=False), EStop()])),
         step("interrupt", ticks, st.sampled_from(commands)),
         step("run_into_switch", joints, ticks),
+        step("stand_on_switch", joints, ticks),
         step("silence", st.sampled_from([0, 0, -1, 1])),
         step("command", st.sampled_from(commands)),
         step("inputs", joints, st.sampled_from([True, False, None, None]), estops),
@@ -324,7 +334,12 @@ SITUATIONS = {
     StopCause.UNDERRUN: [("move", [5, -3], 10, 5, 6000), ("wait", 20_000)],
     StopCause.LEASE: [("move", [1], 50, 20, 7), ("silence", 0)],
     StopCause.BAD_SEGMENT: [("move", [5], 10, 5, 777), ("spoilt", [1], 10, "t_end", 1)],
-    StopCause.LIMIT_SWITCH: [("run_into_switch", 1, 3001), ("wait", 10_000)],
+    StopCause.LIMIT_SWITCH: [
+        ("run_into_switch", 1, 3001),
+        ("wait", 10_000),
+        *(("stand_on_switch", joint, 3001) for joint in (0, 1)),
+        ("wait", 10_000),
+    ],
     StopCause.ESTOP: [("interrupt", 4321, EStop()), ("get_ready",)],
     StopCause.DISABLED: [("interrupt", 2468, Enable(on=False)), ("wait", 20_000)],
     StopCause.HOMED: [("home", 2500, None), ("arm", 1, 0), ("move", [2], 10, 5, 2000)],

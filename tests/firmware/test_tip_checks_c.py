@@ -24,7 +24,7 @@ from tests.firmware import c_library
 from tests.firmware.c_board import CBoard
 from tests.firmware.two_judges import POSITION_ERROR, TIP_ERROR, gantry
 from tests.link.board.bench import Bench, PythonBoard
-from tests.link.board.tip_ways import TICK_HZ, Way, ways
+from tests.link.board.tip_ways import TICK_HZ, Way, leeway_of, ways
 
 PRESETS = ["stm32", "trossen", "zheng2023", "deltadraw"]
 RELATIVE_ERROR = 1e-4  # firmware/core/tip_checks.c, of speeds and accelerations
@@ -38,19 +38,22 @@ class Both:
         in_c = c_library.parameters_from(configure, tick_hz=TICK_HZ)
         assert parameters is not None
         assert in_c is not None
-        self._in_c = in_c
+        self._in_c, self._parameters = in_c, parameters
         self._strict, self._loose = Limits(parameters), Limits(parameters)
         self._loose.low = [low - 3 * POSITION_ERROR for low in self._loose.low]
         self._loose.high = [high + 3 * POSITION_ERROR for high in self._loose.high]
 
     def compare(self, way: Way, monkeypatch) -> int:
         """The firmware's reason, after a look at whether it is one that it may give."""
+        leeway = leeway_of(self._parameters, way)
         reason, joint = c_library.check_tip_segment(
             self._in_c,
             tick_hz=TICK_HZ,
             start=(way.start.p, way.start.v),
             end=(way.end.p, way.end.v),
             ticks=way.ticks,
+            began=leeway.began,
+            outside=leeway.outside,
         )
         strict = self._ask(self._strict, way)
         with monkeypatch.context() as patch:
@@ -66,7 +69,9 @@ class Both:
         return reason
 
     def _ask(self, limits: Limits, way: Way) -> tuple[int, int]:
-        found = TipChecks(limits, tick_hz=TICK_HZ).objection(way.start, way.end, way.ticks)
+        found = TipChecks(limits, tick_hz=TICK_HZ).objection(
+            way.start, way.end, way.ticks, leeway=leeway_of(self._parameters, way)
+        )
         if found is None:
             return (0, -1)
         return (int(found.reason), -1 if found.joint is None else found.joint)

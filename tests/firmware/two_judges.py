@@ -17,8 +17,9 @@ import pytest
 from deltaviz import load_robot
 from deltaviz.link.board import checks as slack
 from deltaviz.link.board.checks import Checks
-from deltaviz.link.board.limits import Limits, Objection
+from deltaviz.link.board.limits import Leeway, Limits, Objection
 from deltaviz.link.board.parameters import Parameters, parameters_from
+from deltaviz.link.board.queue import Knot
 from deltaviz.link.configuration import configure_from
 from deltaviz.link.messages import Configure
 from deltaviz.mechanism import RotaryDelta
@@ -69,6 +70,7 @@ class Both:
         self.configure = configure
         self._mechanism = mechanism
         self._in_c = in_c
+        self._plain = Limits(parameters)
         self._strict = Watched(parameters)
         self._loose = Watched(parameters)
 
@@ -80,7 +82,11 @@ class Both:
             end=(knots.p1, knots.v1),
             ticks=knots.ticks,
             homed=knots.homed,
+            outside=self._outside(knots),
         )
+
+    def _outside(self, knots: Knots) -> float:
+        return _leeway(self._plain, knots).outside
 
     def compare(self, knots: Knots) -> tuple[int, int]:
         """The firmware's answer, after a look at whether it is one of those that it may give."""
@@ -133,9 +139,20 @@ class Both:
         return bool(near.any())
 
 
+def _leeway(limits: Limits, knots: Knots) -> Leeway:
+    """Of an epoch that began where the segment does."""
+    return limits.leeway_at(Knot(knots.p0, knots.v0), homed=knots.homed)
+
+
 def _ask(limits: Limits, knots: Knots) -> tuple[int, int]:
     found: Objection | None = Checks(limits, tick_hz=TICK_HZ).objection(
-        p0=knots.p0, v0=knots.v0, p1=knots.p1, v1=knots.v1, ticks=knots.ticks, homed=knots.homed
+        p0=knots.p0,
+        v0=knots.v0,
+        p1=knots.p1,
+        v1=knots.v1,
+        ticks=knots.ticks,
+        homed=knots.homed,
+        outside=_leeway(limits, knots).outside,
     )
     if found is None:
         return (0, -1)

@@ -23,7 +23,7 @@ TICK = 1e-6  # s
 
 # Each rule as the protocol's description states it: not the constants that the code uses.
 HELLO_REPEAT, GREETING, SILENCE, ANSWER_MS = 0.5, 10.0, 1.0, 1000
-STOP_REPEAT, STALE, NEVER_ARMED_MS = 0.010, 0.150, 100
+STOP_REPEAT, STALE, NEVER_ARMED_MS, HOME_LATE_MS = 0.010, 0.150, 100, 200
 MOST_AT_ONCE = 0.1  # s that a turn of the loop counts as listening
 
 
@@ -168,6 +168,22 @@ def test_homing_may_take_its_time() -> None:
         session.tick(10.0 + 0.1 * k)
     assert session.homing
     assert session.ready
+
+
+@pytest.mark.parametrize(("ticks", "late"), [(-1, False), (0, True)])
+def test_homing_that_has_not_begun_within_200_ms_of_board_time_is_too_late(
+    ticks: int, late: bool
+) -> None:
+    session = asked("home")()
+    session.receive(telemetry(now=1000 + HOME_LATE_MS * MS + ticks), 99.0)
+    assert session.never_began is late
+
+
+def test_homing_that_was_seen_is_not_too_late() -> None:
+    session = asked("home")()
+    session.receive(telemetry(now=1000 + MS, state=m.BoardState.HOMING), 10.0)
+    session.receive(telemetry(now=1000 + 5000 * MS, state=m.BoardState.HOMING), 15.0)
+    assert not session.never_began
 
 
 def test_telemetry_is_news_for_150_ms() -> None:

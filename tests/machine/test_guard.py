@@ -111,6 +111,44 @@ def creep_to(robot: Robot, target_deg: Sequence[float]) -> str | None:
     return None
 
 
+def lowered_by(robot: Robot, speed: float) -> float:
+    """Lowers the tip so slowly (mm/s) that no knot goes further than the guard's slack; how far
+    below the zone's floor it gets within 5 s."""
+    floor = robot.zone.z[0]
+    start = np.array([0.0, 0.0, floor + 0.05])
+    theta = robot.inverse(start)
+    guard = Guard(robot, tuple(theta), homed=True)
+    for k in range(1, 501):
+        now = min(speed, speed * k / 50)
+        start[2] -= now * PERIOD
+        theta = robot.inverse(start)
+        rate = np.linalg.solve(robot.mechanism.jacobian(theta), (0.0, 0.0, -now))
+        if guard.refusal(Knot(PERIOD, tuple(theta), tuple(rate))) is not None:
+            break
+    return float(floor - start[2])
+
+
+def test_knots_cannot_creep_out_by_the_slack_of_each(stm32: Robot) -> None:
+    assert lowered_by(stm32, 1.0) < 0.05
+
+
+def test_a_start_outside_is_judged_by_the_way_in_that_it_has_come(stm32: Robot) -> None:
+    """Inwards from 1 mm below the floor, and out again: only so far as it is by then."""
+    floor = stm32.zone.z[0]
+
+    def knot(z: float) -> Knot:
+        return Knot(0.05, tuple(stm32.inverse([0.0, 0.0, z])), (0.0, 0.0, 0.0))
+
+    def guard() -> Guard:
+        return Guard(stm32, tuple(stm32.inverse([0.0, 0.0, floor - 1.0])), homed=True)
+
+    assert guard().refusal(knot(floor - 1.1)) is not None
+    inwards = guard()
+    assert inwards.refusal(knot(floor - 0.5)) is None
+    assert inwards.refusal(knot(floor - 0.6)) is not None
+    assert inwards.refusal(knot(floor - 0.5)) is None
+
+
 def test_a_legal_way_passes(stm32: Robot) -> None:
     assert creep_to(stm32, [20, 20, 20]) is None
 

@@ -273,7 +273,7 @@ class SimulatedBoard:
             self._reports.refuse(message, Refusal.LEASE)
             control.halt(StopCause.LEASE)
             return
-        control.enqueue(message, origin)
+        control.enqueue(robot, message, origin)
 
     def _objection(
         self, message: Segment | CartesianSegment, origin: Knot | None, robot: ConfiguredBoard
@@ -287,7 +287,9 @@ class SimulatedBoard:
             message, idle_at=idle_at, queue=control.queue, ticks_per_ms=control.ticks_per_ms
         ):
             return Objection(Refusal.TIME)
-        return None if origin is None else robot.objection(message, origin, homed=control.homed)
+        if origin is None:
+            return None
+        return robot.objection(message, origin, control.leeway, homed=control.homed)
 
     def _keep(self, message: Keep) -> None:
         self._control.lease.extend(message.seen, self._control.now)

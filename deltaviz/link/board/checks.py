@@ -3,7 +3,7 @@
 Judged are exactly the motions that would run: the cubic (its end accelerations, its velocity and
 position extrema), the brake from its end, and the tool tip at the middle and the end of both.
 Slack: what rounding to the units of the messages can add, a thousandth of each limit, one
-microstep, and a tenth of a millimetre. Where the motion starts outside a limit, it may not lead
+microstep, and a tenth of a millimetre. Where an epoch began outside a limit, it may not lead
 further out.
 """
 
@@ -37,8 +37,10 @@ class Checks:
         v1: Sequence[int],
         ticks: int,
         homed: bool,
+        outside: float,
     ) -> Objection | None:
-        """What is wrong with the cubic between two knots (units of the messages), if anything."""
+        """What is wrong with the cubic between two knots (units of the messages), if anything.
+        `outside` (mm): how far outside its workspace the tip may be (`Leeway`)."""
         seconds = ticks / self._tick_hz
         cubics = [
             RealCubic(a * P_STEP, b * P_STEP, u * V_STEP, v * V_STEP, seconds)
@@ -48,7 +50,8 @@ class Checks:
         if objection is not None or not homed:
             return objection
         brake = self._limits.brake_ends([c.p1 for c in cubics], [c.v1 for c in cubics])
-        return self._joint_objection(cubics, brake) or self._workspace_objection(cubics, brake)
+        found = self._joint_objection(cubics, brake)
+        return found or self._workspace_objection(cubics, brake, outside)
 
     def _speed_objection(self, cubics: Sequence[RealCubic], *, homed: bool) -> Objection | None:
         h = cubics[0].seconds
@@ -77,7 +80,7 @@ class Checks:
         return None
 
     def _workspace_objection(
-        self, cubics: Sequence[RealCubic], brake: Sequence[float]
+        self, cubics: Sequence[RealCubic], brake: Sequence[float], allowed: float
     ) -> Objection | None:
         limits = self._limits
         if limits.kinematics is None:
@@ -85,18 +88,12 @@ class Checks:
         end = [c.p1 for c in cubics]
         middle = [c.position(c.seconds / 2) for c in cubics]
         halfway = [p + (q - p) * 0.75 for p, q in zip(end, brake, strict=True)]
-        allowed: float | None = None
         for reason, pose in (
             (Refusal.WORKSPACE, middle),
             (Refusal.WORKSPACE, end),
             (Refusal.BRAKE, halfway),
             (Refusal.BRAKE, brake),
         ):
-            outside = limits.outside_at(pose)
-            if outside <= TIP_SLACK:
-                continue
-            if allowed is None:
-                allowed = limits.outside_at([c.p0 for c in cubics])
-            if outside > allowed + TIP_SLACK:
+            if limits.outside_at(pose) > allowed + TIP_SLACK:
                 return Objection(reason)
         return None

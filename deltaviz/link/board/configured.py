@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from deltaviz.link.board.checks import Checks
 from deltaviz.link.board.drive import Drive
-from deltaviz.link.board.limits import Limits, Objection
+from deltaviz.link.board.limits import Leeway, Limits, Objection
 from deltaviz.link.board.parameters import Parameters
 from deltaviz.link.board.paths import Cubic, Path
 from deltaviz.link.board.plant import Plant
@@ -25,10 +25,10 @@ class ConfiguredBoard:
         self.parameters = parameters
         self.hash = hash_
         self._tick_hz = tick_hz
-        limits = Limits(parameters)
-        self._checks = Checks(limits, tick_hz=tick_hz)
+        self.limits = Limits(parameters)
+        self._checks = Checks(self.limits, tick_hz=tick_hz)
         has_arms = parameters.kinematics is not None
-        self._tip_checks = TipChecks(limits, tick_hz=tick_hz) if has_arms else None
+        self._tip_checks = TipChecks(self.limits, tick_hz=tick_hz) if has_arms else None
         plant = Plant(parameters, theta=theta)
         self.drive = Drive(parameters, plant, ticks_per_ms=tick_hz // 1000)
 
@@ -47,11 +47,12 @@ class ConfiguredBoard:
         return change(self.parameters, knot)
 
     def objection(
-        self, segment: Segment | CartesianSegment, origin: Knot, *, homed: bool
+        self, segment: Segment | CartesianSegment, origin: Knot, leeway: Leeway, *, homed: bool
     ) -> Objection | None:
         if isinstance(segment, CartesianSegment):
             assert self._tip_checks is not None
-            return self._tip_checks.objection(origin, knot_of(segment, origin), segment.duration)
+            end = knot_of(segment, origin)
+            return self._tip_checks.objection(origin, end, segment.duration, leeway=leeway)
         return self._checks.objection(
             p0=origin.p,
             v0=origin.v,
@@ -59,6 +60,7 @@ class ConfiguredBoard:
             v1=segment.v,
             ticks=segment.duration,
             homed=homed,
+            outside=leeway.outside,
         )
 
     def path(self, entry: Entry) -> Path:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from deltaviz.link.board.configured import ConfiguredBoard
 from deltaviz.link.board.homing import Homing
 from deltaviz.link.board.lease import Lease
+from deltaviz.link.board.limits import Leeway
 from deltaviz.link.board.queue import Knot, SegmentQueue
 from deltaviz.link.board.reports import Reports
 from deltaviz.link.board.states import POWERED, TRANSITIONS, BoardEvent
@@ -47,6 +48,7 @@ class Control:
         self.homed = False
         self.epoch = last_epoch
         self.queue = SegmentQueue(QUEUE_PLACES)
+        self.leeway = Leeway((), 0.0)  # of the epoch
         self.lease = Lease(LEASE_MS * self.ticks_per_ms)
         self.reports = Reports()
         self.robot: ConfiguredBoard | None = None
@@ -104,10 +106,14 @@ class Control:
         self.cause = StopCause.NONE
         p = tuple(count << 10 for count in arm.counts)
         self.queue.open(p, t_start=arm.t_start, planned=self.planned)
+        self.leeway = robot.limits.leeway_at(self.queue.knot, homed=self.homed)
         self.change(BoardEvent.ARM)
 
-    def enqueue(self, segment: Segment | CartesianSegment, origin: Knot) -> None:
+    def enqueue(
+        self, robot: ConfiguredBoard, segment: Segment | CartesianSegment, origin: Knot
+    ) -> None:
         self.queue.push(segment, origin, planned=self.planned, idle=self.idle)
+        self.leeway = robot.limits.come_to(self.queue.knot, self.leeway)
 
     # Time.
 
@@ -171,16 +177,21 @@ class Control:
             self.reports.changed = True
             if self.estop_input:
                 self.drivers_off(Fault.ESTOP_INPUT)
-        if self.robot is None:
-            return
-        switches, before = self.robot.drive.plant.switches, self._switches
+        if self.robot is not None:
+            self._look_at_switches(self.robot)
+
+    def _look_at_switches(self, robot: ConfiguredBoard) -> None:
+        switches, before = robot.drive.plant.switches, self._switches
         self._switches = switches
-        if switches == before or not (before or any(switches)):
+        if switches != before and (before or any(switches)):
+            self.reports.changed = True
+        if self._homing is not None or self.idle:
             return
-        self.reports.changed = True
         newly = any(is_ and not was for is_, was in zip(switches, before, strict=False))
-        if newly and not self.idle and self.state is not BoardState.HOMING:
-            self._fail(self.robot, Fault.LIMIT_SWITCH, StopCause.LIMIT_SWITCH)
+        comes_from_one = self.state is BoardState.HOMING  # on its way to the ready pose
+        goes_on = self.state is not BoardState.BRAKING and robot.drive.leads_into(switches)
+        if (newly and not comes_from_one) or goes_on:
+            self._fail(robot, Fault.LIMIT_SWITCH, StopCause.LIMIT_SWITCH)
 
     def _judge_lease(self) -> None:
         """Ends it at the last boundary from which the brake begins in time: a piece later."""

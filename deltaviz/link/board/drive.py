@@ -21,6 +21,7 @@ class Drive:
     def __init__(self, parameters: Parameters, plant: Plant, *, ticks_per_ms: int) -> None:
         self._accelerations = parameters.accelerations
         self._ticks_per_ms = ticks_per_ms
+        self._inwards = parameters.configure.homing_direction
         self._stepper = Stepper(parameters.joints, ticks_per_ms)
         self._start = 0  # of the path
         self.end = 0  # of the path
@@ -85,6 +86,15 @@ class Drive:
         assert self.path is not None
         self.planned = self.path.positions(self.path.ticks) or self.planned
         self.path = None
+
+    def leads_into(self, switches: Sequence[bool]) -> bool:
+        """Where a piece begins: a joint whose switch is pressed goes on towards its mechanical
+        end."""
+        here, direction = self._stepper.positions, self._inwards
+        return any(
+            pressed and (there - now) * direction > 0
+            for pressed, now, there in zip(switches, here, self.planned, strict=True)
+        )
 
     def advance(self, ticks: int) -> None:
         self._stepper.advance(ticks)

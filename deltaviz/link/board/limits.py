@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import hypot, inf
 
 from deltaviz.link.board.kinematics import Vector
 from deltaviz.link.board.parameters import Parameters
+from deltaviz.link.board.queue import Knot
+from deltaviz.link.board.tip import P_STEP as TIP_STEP
 from deltaviz.link.messages import Refusal
 
 RELATIVE_SLACK = 1e-3  # of speeds and accelerations
@@ -21,6 +23,18 @@ A_STEP = 1e6 / 2**24  # microsteps per second²: the unit of a configured accele
 class Objection:
     reason: Refusal
     joint: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Leeway:
+    """How far out an epoch may lead that began outside its limits: no further than it `began`
+    (units of a knot's positions), the tip no further `outside` (mm; 0 inside its workspace) than
+    it has come in since. It is kept for the whole epoch, so that no number of segments can creep
+    outwards by the slack of each.
+    """
+
+    began: tuple[int, ...]
+    outside: float
 
 
 class Limits:
@@ -45,6 +59,23 @@ class Limits:
         """Where the brake ends that begins so, by joints (microsteps, s)."""
         time = max(abs(v) / a for v, a in zip(speeds, self.acceleration, strict=False))
         return [p + v * time / 2 for p, v in zip(positions, speeds, strict=True)]
+
+    def leeway_at(self, knot: Knot, *, homed: bool) -> Leeway:
+        """Of an epoch that begins at rest at `knot`. Until it is homed, no tip is known."""
+        knows_tip = homed and self.kinematics is not None
+        return Leeway(knot.p, self._knot_outside(knot) if knows_tip else 0.0)
+
+    def come_to(self, knot: Knot, leeway: Leeway) -> Leeway:
+        """A segment leads to `knot`."""
+        if leeway.outside == 0.0:
+            return leeway
+        return replace(leeway, outside=min(leeway.outside, self._knot_outside(knot)))
+
+    def _knot_outside(self, knot: Knot) -> float:
+        if knot.cartesian:
+            x, y, z = (p * TIP_STEP for p in knot.p[:3])
+            return self.outside((x, y, z))
+        return self.outside_at([p * P_STEP for p in knot.p])
 
     def outside(self, tip: Vector) -> float:
         """How far the tool tip is outside its workspace (mm)."""

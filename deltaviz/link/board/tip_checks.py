@@ -13,7 +13,8 @@ from collections.abc import Sequence
 from math import sqrt
 
 from deltaviz.link.board.kinematics import JointMotion
-from deltaviz.link.board.limits import RELATIVE_SLACK, TIP_SLACK, Limits, Objection
+from deltaviz.link.board.limits import P_STEP as JOINT_STEP
+from deltaviz.link.board.limits import RELATIVE_SLACK, TIP_SLACK, Leeway, Limits, Objection
 from deltaviz.link.board.queue import Knot
 from deltaviz.link.board.tip import P_STEP, V_STEP
 from deltaviz.link.board.tip_path import tip_axes, tip_state
@@ -31,33 +32,28 @@ class TipChecks:
         self._kinematics = limits.kinematics
         self._tick_hz = tick_hz
 
-    def objection(self, start: Knot, end: Knot, ticks: int) -> Objection | None:
+    def objection(self, start: Knot, end: Knot, ticks: int, *, leeway: Leeway) -> Objection | None:
         """What is wrong with the way between two Cartesian knots, if anything."""
         h = ticks / self._tick_hz
         axes = tip_axes(start, end, h)
         looks = -(-ticks * 1000 // (APART_MS * self._tick_hz))
-        first: list[JointMotion] | None = None
+        allowed = leeway.outside + TIP_SLACK
         motions: list[JointMotion] | None = None
-        allowed = TIP_SLACK
         for look in range(looks + 1):
             state = tip_state(axes, h * look / looks)
             motions = self._kinematics.motions(*state)
             if motions is None:
                 return Objection(Refusal.WORKSPACE)
-            outside = self._limits.outside(state[0])
-            if first is None:
-                first, allowed = motions, TIP_SLACK + max(0.0, outside)
-            found = self._joint_objection(motions, first, h)
+            found = self._joint_objection(motions, leeway, h)
             if found is not None:
                 return found
-            if outside > allowed:
+            if self._limits.outside(state[0]) > allowed:
                 return Objection(Refusal.WORKSPACE)
-        assert first is not None
         assert motions is not None
-        return self._brake_objection(first, motions, allowed)
+        return self._brake_objection(motions, leeway)
 
     def _joint_objection(
-        self, motions: Sequence[JointMotion], first: Sequence[JointMotion], h: float
+        self, motions: Sequence[JointMotion], leeway: Leeway, h: float
     ) -> Objection | None:
         a_rounding = sqrt(3) * (6 * P_STEP / (h * h) + 3 * V_STEP / h)
         v_rounding = sqrt(3) * (1.5 * P_STEP / h + V_STEP)
@@ -70,25 +66,26 @@ class TipChecks:
             most = limits.velocity[joint] * grace + m * motion.gain * v_rounding
             if abs(motion.rate) * m > most:
                 return Objection(Refusal.VELOCITY, joint)
-            if not self._within(joint, motion.angle * m, first[joint].angle * m):
+            if not self._within(joint, motion.angle * m, leeway):
                 return Objection(Refusal.JOINT_LIMIT, joint)
         return None
 
-    def _brake_objection(
-        self, first: Sequence[JointMotion], last: Sequence[JointMotion], allowed: float
-    ) -> Objection | None:
+    def _brake_objection(self, last: Sequence[JointMotion], leeway: Leeway) -> Objection | None:
         per_rad = self._limits.per_rad
         end = [motion.angle * m for motion, m in zip(last, per_rad, strict=False)]
         speeds = [motion.rate * m for motion, m in zip(last, per_rad, strict=False)]
         brake = self._limits.brake_ends(end, speeds)
         for joint, position in enumerate(brake):
-            if not self._within(joint, position, first[joint].angle * per_rad[joint]):
+            if not self._within(joint, position, leeway):
                 return Objection(Refusal.BRAKE, joint)
         halfway = [p + (q - p) * 0.75 for p, q in zip(end, brake, strict=True)]
-        if max(self._limits.outside_at(halfway), self._limits.outside_at(brake)) > allowed:
+        far = max(self._limits.outside_at(halfway), self._limits.outside_at(brake))
+        if far > leeway.outside + TIP_SLACK:
             return Objection(Refusal.BRAKE)
         return None
 
-    def _within(self, joint: int, position: float, start: float) -> bool:
+    def _within(self, joint: int, position: float, leeway: Leeway) -> bool:
+        """With a microstep of slack, as the limits have it: a knot of the tip is rounded, too."""
+        began = leeway.began[joint] * JOINT_STEP
         low, high = self._limits.low[joint], self._limits.high[joint]
-        return min(low, start) <= position <= max(high, start)
+        return min(low, began - 1) <= position <= max(high, began + 1)

@@ -113,7 +113,13 @@ def test_outside_its_limits_it_accepts_only_the_way_in(make_configure):
 
     def judge(p0, p1):
         return checks.objection(
-            p0=(p0 * 1024, 0), v0=(0, 0), p1=(p1 * 1024, 0), v1=(0, 0), ticks=4000, homed=True
+            p0=(p0 * 1024, 0),
+            v0=(0, 0),
+            p1=(p1 * 1024, 0),
+            v1=(0, 0),
+            ticks=4000,
+            homed=True,
+            outside=0.0,
         )
 
     assert judge(1520, 1519) is None
@@ -159,6 +165,44 @@ def test_it_brakes_before_it_leaves_the_workspace(guarded):
     }
     assert bench.board.cause in (StopCause.BAD_SEGMENT, StopCause.UNDERRUN)
     assert robot.zone.z[0] - 0.5 <= tip[-1] < robot.zone.z[0] + 20
+
+
+def creep(bench, robot, *, by_tip):
+    """Lowers the tip at 15 mm/s past a floor that is 1 mm below the ready pose, a segment every
+    4 ms: none of them goes further than a tip's slack. How far below the floor it came."""
+    per_rad = np.array(robot.drive.microsteps_per_rad)
+    ready = robot.forward(np.array(robot.homing.ready))
+    down, speed, seconds = np.zeros(len(ready)), 0.0, 0.004
+    bench.arm()
+    for number in range(300):
+        faster = min(15.0, speed + 3.0)
+        down[-1] -= (speed + faster) / 2 * seconds
+        speed = faster
+        tip, velocity = ready + down, np.append(np.zeros(len(ready) - 1), -speed)
+        if by_tip:
+            bench.tip_segment(tip, velocity, ms=4)
+        else:
+            theta = robot.inverse(tip)
+            rates = np.linalg.solve(robot.mechanism.jacobian(theta), velocity)
+            bench.segment(tuple(theta * per_rad), tuple(rates * per_rad), ms=4)
+        if number > 0:
+            bench.run(4)
+        if bench.board.state is not BoardState.ARMED:
+            break
+    bench.run_to_rest()
+    return ready[-1] - 1.0 - robot.forward(np.array(bench.board.counts) / per_rad)[-1]
+
+
+@pytest.mark.parametrize("by_tip", [False, True])
+def test_segments_cannot_creep_out_of_the_workspace(make_bench, by_tip):
+    """By the slack of each: what one may, a hundred may not."""
+    robot = load_robot("stm32")
+    floor = robot.forward(np.array(robot.homing.ready))[-1] - 1.0
+    configure = replace(configure_from(robot), workspace_z=(float(floor), 0.0))
+    bench = make_bench(configure)
+    below = creep(bench, robot, by_tip=by_tip)
+    assert bench.board.cause is StopCause.BAD_SEGMENT
+    assert -0.2 < below < 0.2  # the slack, and the brake's way
 
 
 @simulated_only

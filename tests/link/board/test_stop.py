@@ -262,6 +262,37 @@ def test_a_limit_switch_in_motion_brakes_into_fault(make_bench, accelerations):
     assert Refused("arm", Refusal.STATE) in bench.arm()
 
 
+def stood_with_a_broken_switch(make_bench, configure, **options):
+    """Its wire broke while the robot stood: it reads as pressed, and is no news when it moves."""
+    bench = make_bench(configure, **options)
+    bench.run(1)
+    bench.board.plant.force_switch(1, True)
+    bench.run(5)
+    assert bench.board.state is BoardState.HALTED
+    bench.arm()
+    return bench
+
+
+@pytest.mark.parametrize("homed", [True, False])
+@pytest.mark.parametrize("inwards", [1, -1])
+def test_where_a_switch_is_pressed_already_only_the_way_back_is_open(
+    make_bench, make_configure, homed, inwards
+):
+    configure = make_configure(homing_direction=inwards, homing_switch=(1.6 * inwards,) * 2)
+    for sign in (-inwards, inwards):
+        bench = stood_with_a_broken_switch(make_bench, configure, homed=homed)
+        start = bench.board.counts
+        bench.segment([start[0], start[1] + sign * 2], [0, 0], ms=50)
+        bench.run_to_rest()
+        if sign != inwards:
+            assert bench.board.state is BoardState.ARMED
+            continue
+        assert bench.board.state is BoardState.FAULT
+        assert bench.board.fault is Fault.LIMIT_SWITCH
+        assert bench.last(Stopped).cause is StopCause.LIMIT_SWITCH
+        assert bench.board.counts == start
+
+
 def test_hello_is_a_new_session(make_bench):
     bench = moving(make_bench)
     bench.send(Hello(1))

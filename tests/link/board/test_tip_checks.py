@@ -17,7 +17,7 @@ from deltaviz.link.board.parameters import parameters_from
 from deltaviz.link.board.tip_checks import TipChecks
 from deltaviz.link.configuration import configure_from
 from deltaviz.link.messages import Refusal
-from tests.link.board.tip_ways import TICK_HZ, Way, ways
+from tests.link.board.tip_ways import TICK_HZ, Way, leeway_of, ways
 
 PRESETS = ["stm32", "trossen", "zheng2023", "deltadraw"]
 APART = 0.0002  # s
@@ -28,6 +28,14 @@ def checks_of(robot):
     parameters = parameters_from(configure_from(robot), tick_hz=TICK_HZ)
     assert parameters is not None
     return TipChecks(Limits(parameters), tick_hz=TICK_HZ)
+
+
+def objection_to(robot, way: Way):
+    """In an epoch that began where the way does."""
+    parameters = parameters_from(configure_from(robot), tick_hz=TICK_HZ)
+    assert parameters is not None
+    leeway = leeway_of(parameters, way)
+    return checks_of(robot).objection(way.start, way.end, way.ticks, leeway=leeway)
 
 
 def judge(robot, way: Way):
@@ -45,10 +53,10 @@ def judge(robot, way: Way):
 
 
 def accepted(robot, count, *, seed=1):
-    checks, reasons = checks_of(robot), Counter()
+    reasons = Counter()
     kept = []
     for way in ways(robot, count, seed=seed):
-        objection = checks.objection(way.start, way.end, way.ticks)
+        objection = objection_to(robot, way)
         if objection is None:
             kept.append(way)
         else:
@@ -77,19 +85,18 @@ def test_it_looks_between_the_ends(monkeypatch):
         speed = deep * 4 / 0.050
         here, v = np.array([20.0, 30.0, floor]), np.array([0.0, 0.0, speed])
         way = Way(here, -v, here, v, 0.050)
-        objection = checks_of(robot).objection(way.start, way.end, way.ticks)
+        objection = objection_to(robot, way)
         assert (objection and objection.reason) == refused
     monkeypatch.setattr(tip_checks, "APART_MS", 1000)
-    assert checks_of(robot).objection(way.start, way.end, way.ticks) is None
+    assert objection_to(robot, way) is None
 
 
 def test_a_way_that_is_refused_breaks_a_limit():
     """Not all are, but of those for a joint's speed or acceleration."""
     robot = load_robot("stm32")
-    checks = checks_of(robot)
     seen = 0
     for way in ways(robot, 300, seed=2):
-        objection = checks.objection(way.start, way.end, way.ticks)
+        objection = objection_to(robot, way)
         if objection is not None and objection.reason is Refusal.ACCELERATION:
             seen += 1
             assert judge(robot, way)[1] > 0.98

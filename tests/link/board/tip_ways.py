@@ -7,7 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from deltaviz.link.board.limits import Leeway, Limits
+from deltaviz.link.board.parameters import Parameters
 from deltaviz.link.board.queue import Knot
+from deltaviz.link.board.tip import joint_knot, tip_of
 from deltaviz.robots import Robot
 
 TICK_HZ = 200_000
@@ -48,6 +51,14 @@ def knot(p: np.ndarray, v: np.ndarray) -> Knot:
         tuple(round(float(x) * 65_536) for x in v),
         cartesian=True,
     )
+
+
+def leeway_of(parameters: Parameters, way: Way) -> Leeway:
+    """Of an epoch that began where the way does."""
+    rest = Knot(way.start.p, (0, 0, 0), cartesian=True)
+    joints = joint_knot(parameters, rest)
+    began = (0, 0, 0) if joints is None else joints.p
+    return Leeway(began, Limits(parameters).outside(tip_of(rest)))
 
 
 def ways(robot: Robot, count: int, *, seed: int) -> Iterator[Way]:
