@@ -27,7 +27,7 @@ def bench() -> WireBench:
     return bench
 
 
-@pytest.mark.parametrize("deaf", [0.25, 1.0, 5.0])  # s
+@pytest.mark.parametrize("deaf", [0.25, 3.0])  # s
 @pytest.mark.parametrize("asked", ASKED)
 def test_a_press_is_forgotten_with_the_wire_that_lost_it(
     bench: WireBench, asked: str, deaf: float
