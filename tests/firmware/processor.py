@@ -11,7 +11,7 @@ from typing import Any, Protocol
 
 from capstone import CS_ARCH_ARM, CS_MODE_MCLASS, CS_MODE_THUMB, Cs
 from elftools.elf.elffile import ELFFile
-from unicorn import UC_ARCH_ARM, UC_HOOK_BLOCK, UC_MODE_MCLASS, UC_MODE_THUMB
+from unicorn import UC_ARCH_ARM, UC_HOOK_BLOCK, UC_HOOK_CODE, UC_MODE_MCLASS, UC_MODE_THUMB
 from unicorn.arm_const import (
     UC_ARM_REG_LR,
     UC_ARM_REG_PC,
@@ -52,6 +52,16 @@ class Registers:
 
 
 @dataclass(frozen=True, slots=True)
+class Access:
+    """Of a peripheral's register: how far the processor had come by then."""
+
+    address: int
+    writes: bool
+    cycles: int  # ever, estimated
+    barriers: int  # ever: DSB
+
+
+@dataclass(frozen=True, slots=True)
 class Cost:
     instructions: int
     cycles: int  # estimated, without wait states
@@ -80,15 +90,37 @@ class Processor:
         for start, size in PERIPHERALS:
             self._uc.mmio_map(start, size, self._read, start, self._write, start)
         self._meter = _Meter(self._uc)
+        self._accesses: list[Access] | None = None
+        self._cycles = self._barriers = 0
 
     def _peripheral(self, address: int) -> Peripheral:
         return self._peripherals.setdefault(address - address % BLOCK, Registers())
 
     def _read(self, _uc: Uc, offset: int, _size: int, start: Any) -> int:
+        self._accessed(start + offset, writes=False)
         return self._peripheral(start + offset).read(offset % BLOCK)
 
     def _write(self, _uc: Uc, offset: int, _size: int, value: int, start: Any) -> None:
+        self._accessed(start + offset, writes=True)
         self._peripheral(start + offset).write(offset % BLOCK, value)
+
+    def _accessed(self, address: int, *, writes: bool) -> None:
+        if self._accesses is not None:
+            self._accesses.append(Access(address, writes, self._cycles, self._barriers))
+
+    def log_accesses(self) -> list[Access]:
+        """Of peripherals, from now on, in their order."""
+        self._accesses = []
+        decoder = Cs(CS_ARCH_ARM, CS_MODE_THUMB | CS_MODE_MCLASS)
+
+        def step(uc: Uc, address: int, size: int, _data: Any) -> None:
+            code = bytes(uc.mem_read(address, size))
+            _, _, name, operands = next(decoder.disasm_lite(code, address))
+            self._cycles += _cycles(name, operands)
+            self._barriers += name == "dsb"
+
+        self._uc.hook_add(UC_HOOK_CODE, step)
+        return self._accesses
 
     def reset(self, until: str) -> None:
         """From reset to the first call of the function `until`."""

@@ -16,6 +16,7 @@ GPIO = {port: 0x4002_0000 + 0x400 * number for number, port in enumerate("ABCDE"
 MODER, PUPDR, AFRL, BSRR = 0x00, 0x0C, 0x20, 0x18
 IWDG, RNG, PRIORITIES, SYSTEM_CONTROL = 0x4000_3000, 0x5006_0800, 0xE000_E400, 0xE000_EC00
 USART2, CR1, TE, UE = 0x4000_4400, 0x0C, 1 << 3, 1 << 13
+CORE = 0xE000_0000
 TIM2_IRQ, USART2_IRQ, SHPR3 = 28, 38, 0x120
 INPUT, OUTPUT, FUNCTION, FLOATING, PULLED_UP = 0, 1, 2, 0, 1
 BOARDS = Path(__file__).parents[2] / "firmware" / "port" / "stm32f407" / "boards"
@@ -90,13 +91,17 @@ class RandomNumbers(Registers):
         return {0x04: 1, 0x08: 0x1234_5678}.get(offset, 0)
 
 
-def start(board: str) -> tuple[Processor, dict[int, Any]]:
+def powered(board: str) -> tuple[Processor, dict[int, Any]]:
     tree, usart = ClockTree(CRYSTALS[board]), Registers()
     devices: dict[int, Any] = {base: Pins() for base in GPIO.values()}
     devices |= {GPIO["A"]: LinkPort(usart), USART2: usart}
     devices |= {RCC: tree.rcc, FLASH: tree.flash, IWDG: Watchdog(), RNG: RandomNumbers()}
     devices |= {PRIORITIES: Registers(), SYSTEM_CONTROL: Registers()}
-    processor = Processor(built(f"{board}.elf"), devices)
+    return Processor(built(f"{board}.elf"), devices), devices
+
+
+def start(board: str) -> tuple[Processor, dict[int, Any]]:
+    processor, devices = powered(board)
     processor.reset(until="dv_board_poll")
     return processor, devices
 
@@ -104,6 +109,25 @@ def start(board: str) -> tuple[Processor, dict[int, Any]]:
 @pytest.fixture(scope="module", params=CRYSTALS)
 def started(request):
     return start(request.param)
+
+
+@pytest.mark.parametrize("board", CRYSTALS)
+def test_no_peripheral_is_spoken_to_before_its_clock_has_come(board):
+    """ES0182: two cycles of AHB, or one and its divisor of APB, 4, after RCC was told."""
+    processor, _ = powered(board)
+    accesses = processor.log_accesses()
+    processor.reset(until="dv_board_poll")
+    enables = range(RCC + 0x30, RCC + 0x48)
+    waits: list[tuple[int, int]] = []
+    for at, told in enumerate(accesses):
+        if told.writes and told.address in enables:
+            there = (a for a in accesses[at:] if a.address & ~0x3FF != RCC and a.address < CORE)
+            first = next(there)
+            assert first.barriers > told.barriers, hex(first.address)
+            waits.append((first.cycles - told.cycles, first.address))
+    own = 2  # cycles of the access itself
+    assert min(waits) >= (1 + 4 + own, 0), [(wait, hex(address)) for wait, address in waits]
+    assert len(waits) >= 6  # power, ports, TIM2, TIM3, USART2, random numbers
 
 
 def pins_of(board: str) -> dict[str, tuple[str, int]]:

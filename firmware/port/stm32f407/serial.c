@@ -3,6 +3,7 @@
 #include BOARD_HEADER
 #include "gpio.h"
 #include "interrupts.h"
+#include "peripherals.h"
 #include "ring.h"
 
 /* Of what is to be sent, so that sending does not keep the step interrupt waiting. */
@@ -12,7 +13,7 @@ static struct ring received, to_send;
 
 void serial_start(const struct clock *clock)
 {
-    RCC_APB1ENR |= RCC_APB1ENR_USART2EN;
+    peripheral_enable(&RCC_APB1ENR, RCC_APB1ENR_USART2EN);
     pin_pull(PIN_SERIAL_RX, GPIO_PULL_UP); /* without an adapter it hears silence, not noise */
     pin_function(PIN_SERIAL_RX, PIN_SERIAL_FUNCTION);
     USART2_BRR = (clock->serial_hz + BAUD / 2u) / BAUD;

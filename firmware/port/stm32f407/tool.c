@@ -2,6 +2,7 @@
 
 #include BOARD_HEADER
 #include "gpio.h"
+#include "peripherals.h"
 
 #define COUNT_HZ 1000000u /* the timer counts microseconds */
 #define PERIOD_US 20000u
@@ -16,7 +17,7 @@ void tool_start(const struct clock *clock)
 {
     pin_write(PIN_TOOL, false);
     pin_mode(PIN_TOOL, GPIO_OUTPUT);
-    RCC_APB1ENR |= RCC_APB1ENR_TIM3EN;
+    peripheral_enable(&RCC_APB1ENR, RCC_APB1ENR_TIM3EN);
     TIM3_PSC = clock->timer_hz / COUNT_HZ - 1u;
     TIM3_ARR = PERIOD_US - 1u;
     TIM3_CCR1 = 0; /* no pulse */

@@ -4,6 +4,7 @@
 #include "clock.h"
 
 #include BOARD_HEADER
+#include "peripherals.h"
 #include "regs.h"
 
 #include <stdbool.h>
@@ -74,7 +75,7 @@ static struct clock slow(enum clock_error error)
 
 struct clock clock_start(void)
 {
-    RCC_APB1ENR |= RCC_APB1ENR_PWREN;
+    peripheral_enable(&RCC_APB1ENR, RCC_APB1ENR_PWREN);
     PWR_CR |= PWR_CR_VOS; /* scale 1, which 168 MHz needs */
     bool crystal = start_crystal();
     if (!start_pll(crystal)) {
