@@ -198,9 +198,11 @@ def test_the_main_loop_feeds_it_only_while_control_runs(started):
     assert fed() == 0
 
 
-def test_a_fault_lets_go_of_the_drivers(started):
+def test_a_fault_lets_go_of_the_drivers_and_of_the_tool(started):
     processor, devices = started
     port = devices[GPIO["D"]]
+    port.levels[11] = True
     port.values[MODER] |= OUTPUT << 20  # as once a host has enabled them
     processor.run_for(processor.symbols["fault_handler"], instructions=200)
     assert port.two_bits(MODER, 10) == INPUT
+    assert port.levels[11] is False

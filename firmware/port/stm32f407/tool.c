@@ -15,7 +15,7 @@
 
 void tool_start(const struct clock *clock)
 {
-    pin_write(PIN_TOOL, false);
+    tool_off();
     pin_mode(PIN_TOOL, GPIO_OUTPUT);
     peripheral_enable(&RCC_APB1ENR, RCC_APB1ENR_TIM3EN);
     TIM3_PSC = clock->timer_hz / COUNT_HZ - 1u;
@@ -34,4 +34,9 @@ void tool_write(bool on, float angle)
     us = us < LEAST_US ? LEAST_US : us > MOST_US ? MOST_US : us;
     pin_write(PIN_TOOL, on);
     TIM3_CCR1 = (uint32_t)us;
+}
+
+void tool_off(void)
+{
+    pin_write(PIN_TOOL, false);
 }
