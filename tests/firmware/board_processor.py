@@ -14,7 +14,7 @@ from deltaviz.link.messages import BoardMessage, BoardState, HostMessage, Teleme
 from deltaviz.link.wire.codec import decode_board, encode
 from deltaviz.link.wire.commands import COMMANDS
 from deltaviz.link.wire.frames import FrameReader, write_frame
-from tests.firmware.clock_tree import FLASH, RCC, ClockTree
+from tests.firmware.clock_tree import ClockTree
 from tests.firmware.processor import Cost, Processor, Registers
 
 USART2, GPIOD, SYSTEM_CONTROL = 0x4000_4400, 0x4002_0C00, 0xE000_EC00
@@ -56,8 +56,7 @@ class SteppedBoard:
         self.processor = Processor(
             image,
             {
-                RCC: tree.rcc,
-                FLASH: tree.flash,
+                **tree.devices,
                 USART2: self._serial,
                 SYSTEM_CONTROL: self._system,
                 GPIOD: self._switch_port,

@@ -56,7 +56,7 @@ class Access:
     """Of a peripheral's register: how far the processor had come by then."""
 
     address: int
-    writes: bool
+    written: int | None  # None: it was read
     cycles: int  # ever, estimated
     barriers: int  # ever: DSB
 
@@ -97,16 +97,16 @@ class Processor:
         return self._peripherals.setdefault(address - address % BLOCK, Registers())
 
     def _read(self, _uc: Uc, offset: int, _size: int, start: Any) -> int:
-        self._accessed(start + offset, writes=False)
+        self._accessed(start + offset, None)
         return self._peripheral(start + offset).read(offset % BLOCK)
 
     def _write(self, _uc: Uc, offset: int, _size: int, value: int, start: Any) -> None:
-        self._accessed(start + offset, writes=True)
+        self._accessed(start + offset, value)
         self._peripheral(start + offset).write(offset % BLOCK, value)
 
-    def _accessed(self, address: int, *, writes: bool) -> None:
+    def _accessed(self, address: int, written: int | None) -> None:
         if self._accesses is not None:
-            self._accesses.append(Access(address, writes, self._cycles, self._barriers))
+            self._accesses.append(Access(address, written, self._cycles, self._barriers))
 
     def log_accesses(self) -> list[Access]:
         """Of peripherals, from now on, in their order."""

@@ -10,6 +10,7 @@ enum clock_error {
     CLOCK_NO_CRYSTAL = 1, /* 168 MHz from the internal oscillator, 1 % off at worst */
     CLOCK_NO_PLL = 2,     /* 16 MHz from the internal oscillator */
     CLOCK_NO_SWITCH = 3,  /* the same */
+    CLOCK_ODD_CRYSTAL = 4, /* of none of the frequencies that are known, or not to be measured: as 1 */
 };
 
 struct clock {
