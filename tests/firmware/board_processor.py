@@ -50,8 +50,8 @@ class Serial(Registers):
 
 
 class SteppedBoard:
-    def __init__(self, image: Path, *, crystal_hz: int) -> None:
-        tree, self._serial, self._system = ClockTree(crystal_hz), Serial(), Registers()
+    def __init__(self, image: Path, tree: ClockTree) -> None:
+        self._serial, self._system = Serial(), Registers()
         self._switch_port = Registers()
         self.processor = Processor(
             image,

@@ -26,6 +26,7 @@ from deltaviz.link.messages import (
     Segment,
 )
 from tests.firmware.board_processor import SteppedBoard
+from tests.firmware.clock_tree import ClockTree
 from tests.firmware.processor import Cost
 
 CPU_HZ, TICK_HZ, BYTES_HZ = 168_000_000, 200_000, 92_160
@@ -98,7 +99,7 @@ def configuration(joints: int) -> Configure:
 
 def homed_board(joints: int) -> SteppedBoard:
     """Enabled, and homed by switches that are pressed in their turn."""
-    board = SteppedBoard(built("f407vet6.elf"), crystal_hz=25_000_000)
+    board = SteppedBoard(built("f407vet6.elf"), ClockTree(25_000_000))
     for command in (Hello(1), configuration(joints), Enable(on=True)):
         board.send(command)
     board.run(10)

@@ -10,7 +10,19 @@ from dataclasses import replace
 
 import pytest
 
+from deltaviz import load_robot
+from deltaviz.link.configuration import configure_from
 from deltaviz.link.emulator.firmware import built
+from deltaviz.link.messages import (
+    PROTOCOL_VERSION,
+    Enable,
+    Hello,
+    HelloReply,
+    Refusal,
+    Refused,
+    Telemetry,
+)
+from tests.firmware.board_processor import SteppedBoard
 from tests.firmware.clock_tree import ClockTree
 from tests.firmware.processor import Peripheral, Processor, Registers
 
@@ -127,6 +139,24 @@ def test_ticks_and_baud_are_right_on_every_clock_and_an_error_is_told(board, tre
     assert tree.timer_hz(1) / (timer.values[ARR] + 1) == tick_hz
     assert tree.bus_hz(1) / serial.values[BRR] == pytest.approx(921_600, rel=0.025)
     assert processor.word(processor.symbols["hal"] + HAL_TICK_HZ) == tick_hz
+
+
+@pytest.mark.parametrize(
+    "tree",
+    [ClockTree(8_000_000, pll_locks=False), ClockTree(8_000_000, switches=False)],
+    ids=["no pll", "no switch"],
+)
+def test_without_the_pll_the_board_speaks_but_is_not_enabled(tree):
+    board = SteppedBoard(built("f407vet6.elf"), replace(tree))
+    board.send(Hello(PROTOCOL_VERSION))
+    board.send(configure_from(load_robot("stm32")))
+    board.send(Enable(on=True))
+    greeting, *answers = (m for m in board.said() if not isinstance(m, Telemetry))
+    assert isinstance(greeting, HelloReply)
+    assert answers == [
+        Refused("configure", Refusal.CONFIGURATION),
+        Refused("enable", Refusal.CONFIGURATION),
+    ]
 
 
 def test_the_model_notices_what_silicon_would_not_forgive():

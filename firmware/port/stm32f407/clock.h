@@ -10,7 +10,7 @@
 enum clock_error {
     CLOCK_FINE = 0,
     CLOCK_NO_CRYSTAL = 1,  /* 168 MHz from the internal oscillator (HSI) */
-    CLOCK_NO_PLL = 2,      /* 16 MHz from it */
+    CLOCK_NO_PLL = 2,      /* 16 MHz from it, too slow for motion */
     CLOCK_NO_SWITCH = 3,   /* the same */
     CLOCK_ODD_CRYSTAL = 4, /* of none of the known frequencies, or not to be measured: as 1 */
 };

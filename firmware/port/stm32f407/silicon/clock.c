@@ -7,6 +7,7 @@
 #include "crystal.h"
 #include "peripherals.h"
 #include "regs.h"
+#include "rules.h"
 #include "wait.h"
 
 #include <stdbool.h>
@@ -20,6 +21,9 @@
 #define APB1_BY_4 FIELD(RCC_CFGR_PPRE1, 5u)
 #define APB2_BY_2 FIELD(RCC_CFGR_PPRE2, 4u)
 #define APB1_DIVISOR 4u
+
+_Static_assert(TICK_HZ >= DV_TICK_HZ_MIN && TICK_HZ_SLOW < DV_TICK_HZ_MIN,
+               "without the PLL the processor is too slow for motion, and the core has to know");
 
 /* Crystals that boards have, and how far off one may be measured: HSI itself is 4 % off at worst
  * between -10 and 85 °C (DS8626).
