@@ -56,8 +56,8 @@ struct dv_hal {
      */
     void (*tool)(void *context, bool on, float servo_angle);
 
-    /* Main loop. Keeps the control interrupt waiting; at most for the 0.3 ms that the longest
-     * message takes. Never nested.
+    /* Main loop. Keeps the control interrupt waiting, at most for the 0.3 ms that the longest
+     * message takes; a segment's motion, which takes longer, is judged unlocked. Never nested.
      */
     void (*lock_control)(void *context);
     void (*unlock_control)(void *context);

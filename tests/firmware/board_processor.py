@@ -62,6 +62,7 @@ class SteppedBoard:
                 GPIOD: self._switch_port,
             },
         )
+        self.locks = self.processor.watch_between("lock_control", "unlock_control")
         self.processor.reset(until="dv_board_poll")
         self._board = self.processor.symbols["board"]
         self._reader = FrameReader()

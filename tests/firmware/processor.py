@@ -151,6 +151,10 @@ class Processor:
         """What calls of these cost while `cost` is measured is kept in `watched`."""
         self._meter.watch({self.symbols[name]: name for name in functions})
 
+    def watch_between(self, begin: str, end: str) -> list[Cost]:
+        """What passes from each call of `begin` to the next of `end`, while `cost` is measured."""
+        return self._meter.watch_between(self.symbols[begin], self.symbols[end])
+
     @property
     def watched(self) -> dict[str, list[Cost]]:
         return self._meter.watched
@@ -208,6 +212,9 @@ class _Meter:
         self._names: dict[int, str] = {}
         self._open: list[tuple[str, int, int, int]] = []  # name, return address, and so far
         self.watched: dict[str, list[Cost]] = {}
+        self._ends: tuple[int, int] | None = None
+        self._began = Cost(0, 0)
+        self._between: list[Cost] = []
         self.instructions = self.cycles = 0
         # From the first block on: code that has run without a hook never meets one.
         uc.hook_add(UC_HOOK_BLOCK, self._block)
@@ -215,6 +222,19 @@ class _Meter:
     def watch(self, names: dict[int, str]) -> None:
         self._names = names
         self.watched = {name: [] for name in names.values()}
+
+    def watch_between(self, begin: int, end: int) -> list[Cost]:
+        self._ends = begin, end
+        return self._between
+
+    def _note_between(self, address: int) -> None:
+        begin, end = self._ends or (None, None)
+        if address == begin:
+            self._began = Cost(self.instructions, self.cycles)
+        elif address == end:
+            self._between.append(
+                Cost(self.instructions - self._began.instructions, self.cycles - self._began.cycles)
+            )
 
     def __enter__(self) -> None:
         self.instructions = self.cycles = self._next = 0
@@ -230,6 +250,7 @@ class _Meter:
         if self._open and address == self._open[-1][1]:
             name, _, instructions, cycles = self._open.pop()
             self.watched[name].append(Cost(self.instructions - instructions, self.cycles - cycles))
+        self._note_between(address)
         if address in self._names:
             back = self._uc.reg_read(UC_ARM_REG_LR) & ~1
             self._open.append((self._names[address], back, self.instructions, self.cycles))
