@@ -1,6 +1,6 @@
 /* The registers of the STM32F407 that this firmware uses, by the names of its reference manual
  * (RM0090): PERIPHERAL_REGISTER, and PERIPHERAL_REGISTER_FIELD for the bits of a field. The core's
- * are those of the Cortex-M4 (PM0214). Held to published data by tests/firmware/test_registers.py.
+ * are those of the Cortex-M4 (PM0214). Held to published data by tests/firmware/test_chip_data.py.
  */
 #ifndef REGS_H
 #define REGS_H

@@ -6,10 +6,10 @@
 #include "wait.h"
 
 #define HSI_KHZ 16000u
-#define DIVISOR 31u /* the largest: 806 kHz of 25 MHz, of which TIM11 sees every edge */
-#define EDGES 8u    /* a capture: of 25 MHz every 159 cycles, of which looking for it takes some 20 */
+#define DIVISOR 31u  /* the largest: 806 kHz of 25 MHz, of which TIM11 sees every edge */
+#define EDGES 8u     /* a capture: one every 159 cycles of HSI for 25 MHz, and a look takes some 20 */
 #define CAPTURES 16u /* 2540 counts for 25 MHz, 15872 for 4 MHz, the slowest that HSE can have */
-#define TURN 65536u /* counts */
+#define TURN 65536u  /* counts */
 #define HSE_RTC FIELD(TIM11_OR_TI1_RMP, 2u)
 #define ITS_OWN_INPUT FIELD(TIM11_CCMR1_CC1S, 1u)
 #define EVERY_8TH FIELD(TIM11_CCMR1_IC1PSC, 3u)
