@@ -45,13 +45,12 @@ def pins() -> str:
 
 
 def boards() -> str:
-    rows = ["| board | image | crystal | light |", "| --- | --- | --- | --- |"]
+    rows = ["| board | image | light |", "| --- | --- | --- |"]
     for image in ("disc1", "f407vet6"):
         header = defined(f"boards/{image}.h")
-        mhz = int(header["BOARD_HSE_HZ"].rstrip("u")) // 1_000_000
         lit = "high" if header["LED_LIT_BY"] == "1u" else "low"
         rows.append(
-            f"| {header['BOARD_NAME'].strip(chr(34))} | `firmware/build/{image}.bin` | {mhz} MHz | "
+            f"| {header['BOARD_NAME'].strip(chr(34))} | `firmware/build/{image}.bin` | "
             f"{pin(header['PIN_LED'])}, lit by a {lit} level |"
         )
     return "\n".join(rows)

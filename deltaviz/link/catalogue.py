@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import os
 from dataclasses import replace
+from typing import Any
 
 from deltaviz.link import problems
 from deltaviz.link.configuration import configure_from
@@ -22,11 +23,10 @@ def _port(number: int) -> str:
     return trouble(_PORT, OSError(number, os.strerror(number)))
 
 
-def _too_fast() -> str:
+def _refused(*, tick_hz: int = TICK_HZ, **changes: Any) -> str:
     from deltaviz.robots import load_robot
 
-    configure = configure_from(load_robot("stm32"))
-    return objection(replace(configure, velocity=(10_000_000,) * 3), tick_hz=TICK_HZ)
+    return objection(replace(configure_from(load_robot("stm32")), **changes), tick_hz=tick_hz)
 
 
 def catalogue() -> tuple[tuple[str, str], ...]:
@@ -52,5 +52,6 @@ def catalogue() -> tuple[tuple[str, str], ...]:
         ("the board restarts", problems.restarted()),
         ("the board falls silent", problems.silent()),
         ("the cable is pulled", broke(_PORT, "it was unplugged, or has lost its power")),
-        ("a robot file that the board cannot follow", _too_fast()),
+        ("a robot file that the board cannot follow", _refused(velocity=(10_000_000,) * 3)),
+        ("a board whose clock does not come up", _refused(tick_hz=10_000)),
     )

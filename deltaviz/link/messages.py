@@ -153,7 +153,8 @@ class Configure:
     positive and is not; a ready pose outside the joint limits or out of reach; more than a step
     every other tick, less 0.2 % for the slack of speeds; homing faster than the joint's velocity,
     further than 2^20 microsteps or in more than ten minutes; a brake from top velocity that takes
-    more than a second.
+    more than a second. A board of fewer than 20 000 ticks a second, whose clock did not come up,
+    refuses them all.
     """
 
     kind: RobotKind

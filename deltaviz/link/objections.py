@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from deltaviz.link.configuration import A_UNIT, V_UNIT
 from deltaviz.link.messages import Configure
+from deltaviz.link.rules import TICK_HZ_MIN
 
 STEP_TICKS = 2.004  # a step every other tick, and 0.2 % for the slack of speeds
 BRAKE_MAX = 1.0  # s from top velocity
@@ -27,6 +28,11 @@ def objection(configure: Configure, *, tick_hz: int) -> str:
 
 
 def _broken(c: Configure, tick_hz: int) -> Iterator[str]:
+    if tick_hz < TICK_HZ_MIN:
+        yield (
+            "an error of its clock, which deltaviz ports names, makes it too slow for any motion. "
+            "Switch it off and on."
+        )
     for joint, velocity in enumerate(c.velocity):
         name, rate = f"joint {joint + 1}", velocity / V_UNIT
         most = tick_hz / STEP_TICKS

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 TICK_HZ = 200_000
+TICK_HZ_MIN = 20_000  # of a board that moves; with fewer its processor is too slow for motion
 LEASE_MS = 150  # after the telemetry tick that the host saw
 SEGMENT_MIN_MS = 4
 SEGMENT_MAX_MS = 50

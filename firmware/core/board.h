@@ -4,7 +4,8 @@
  *                   notices rest, goes on with homing, plans the piece after the one that begins.
  *                   Budget: 1 ms less what the step interrupt takes; late, the drivers go off.
  * dv_board_poll     the main loop: takes bytes, carries out what is whole, sends what there is to say.
- *                   Control is kept out while one message is carried out.
+ *                   Control is kept out while one message is carried out, but for the motion of a
+ *                   segment, which is judged while control goes on.
  * dv_stepper_tick   on `stepper`: the step interrupt.
  */
 #ifndef DV_BOARD_H

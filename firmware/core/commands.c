@@ -58,10 +58,10 @@ static void configure(struct dv_board *board, const struct dv_configure *message
     struct dv_parameters parameters;
     if (hash == control->configuration) {
         dv_say_configured(&board->reports, hash);
-    } else if (control->state != DV_STATE_DISABLED) {
-        refuse(board, DV_CONFIGURE, DV_REFUSAL_STATE);
     } else if (!dv_parameters_from(&parameters, message, board->hal->tick_hz)) {
         refuse(board, DV_CONFIGURE, DV_REFUSAL_CONFIGURATION);
+    } else if (control->state != DV_STATE_DISABLED) {
+        refuse(board, DV_CONFIGURE, DV_REFUSAL_STATE);
     } else {
         control->parameters = parameters;
         dv_control_configure(control, hash);

@@ -5,7 +5,9 @@
 #include "board.h"
 #include "frames.h"
 
-/* What is no well-formed message from a host is passed over. Control is kept out meanwhile. */
+/* What is no well-formed message from a host is passed over. Control is kept out meanwhile, but while
+ * the motion of a segment is judged.
+ */
 void dv_carry_out(struct dv_board *board, const struct dv_frame *frame);
 
 #endif

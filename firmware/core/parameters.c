@@ -1,6 +1,7 @@
 #include "parameters.h"
 
 #include "kinematics.h"
+#include "rules.h"
 
 #include <math.h>
 

@@ -9,7 +9,6 @@
 
 #define DV_ARMS_MAX 3
 
-#define DV_TICK_HZ_MIN 1000u
 #define DV_TICK_HZ_MAX 500000u /* up to here the arithmetic of paths and cubics fits 64 bits */
 
 /* One arm (dv_arm is a message). */
@@ -32,8 +31,8 @@ struct dv_parameters {
     struct dv_limb limb[DV_ARMS_MAX];
 };
 
-/* False for a configuration that makes no sense (messages.py says which do not), and for a tick that
- * is out of bounds. `parameters` are then not to be used.
+/* False for a configuration that makes no sense (messages.py says which do not), and for a tick out of
+ * its bounds: DV_TICK_HZ_MIN to DV_TICK_HZ_MAX, whole kHz. `parameters` are then not to be used.
  */
 bool dv_parameters_from(struct dv_parameters *parameters, const struct dv_configure *configure,
                         uint32_t tick_hz);

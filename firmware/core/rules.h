@@ -2,6 +2,11 @@
 #ifndef DV_RULES_H
 #define DV_RULES_H
 
+/* A board with fewer step ticks a second takes no configuration, so it never moves: its clock did not
+ * come up, and what its processor then does in a millisecond is too little for steps, control and
+ * segments.
+ */
+#define DV_TICK_HZ_MIN 20000u
 #define DV_LEASE_MS 150 /* after the telemetry tick that the host saw */
 #define DV_SEGMENT_MIN_MS 4
 #define DV_SEGMENT_MAX_MS 50

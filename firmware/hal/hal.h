@@ -31,7 +31,8 @@ struct dv_hal {
     const char *board; /* names, of printable ASCII, at most DV_TEXT_MAX characters each */
     const char *build;
     uint32_t boot;    /* names this power-up: another than that of the last ones */
-    uint32_t tick_hz; /* of the step interrupt: DV_TICK_HZ_MIN to DV_TICK_HZ_MAX, whole kHz */
+    uint32_t tick_hz; /* of the step interrupt: whole kHz, to DV_TICK_HZ_MAX; below DV_TICK_HZ_MIN the
+                         board speaks, but does not move */
 
     /* Main loop. Takes up to `most` bytes that have arrived; how many. */
     size_t (*read)(void *context, uint8_t *bytes, size_t most);
@@ -55,8 +56,8 @@ struct dv_hal {
      */
     void (*tool)(void *context, bool on, float servo_angle);
 
-    /* Main loop. Keeps the control interrupt waiting; at most for the 0.3 ms that the longest
-     * message takes. Never nested.
+    /* Main loop. Keeps the control interrupt waiting, at most for the 0.3 ms that the longest
+     * message takes; a segment's motion, which takes longer, is judged unlocked. Never nested.
      */
     void (*lock_control)(void *context);
     void (*unlock_control)(void *context);

@@ -14,7 +14,7 @@ from deltaviz.link.messages import BoardMessage, BoardState, HostMessage, Teleme
 from deltaviz.link.wire.codec import decode_board, encode
 from deltaviz.link.wire.commands import COMMANDS
 from deltaviz.link.wire.frames import FrameReader, write_frame
-from tests.firmware.clock_tree import FLASH, RCC, ClockTree
+from tests.firmware.clock_tree import ClockTree
 from tests.firmware.processor import Cost, Processor, Registers
 
 USART2, GPIOD, SYSTEM_CONTROL = 0x4000_4400, 0x4002_0C00, 0xE000_EC00
@@ -50,19 +50,19 @@ class Serial(Registers):
 
 
 class SteppedBoard:
-    def __init__(self, image: Path, *, crystal_hz: int) -> None:
-        tree, self._serial, self._system = ClockTree(crystal_hz), Serial(), Registers()
+    def __init__(self, image: Path, tree: ClockTree) -> None:
+        self._serial, self._system = Serial(), Registers()
         self._switch_port = Registers()
         self.processor = Processor(
             image,
             {
-                RCC: tree.rcc,
-                FLASH: tree.flash,
+                **tree.devices,
                 USART2: self._serial,
                 SYSTEM_CONTROL: self._system,
                 GPIOD: self._switch_port,
             },
         )
+        self.locks = self.processor.watch_between("lock_control", "unlock_control")
         self.processor.reset(until="dv_board_poll")
         self._board = self.processor.symbols["board"]
         self._reader = FrameReader()

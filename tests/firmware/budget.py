@@ -19,13 +19,18 @@ from deltaviz.link.messages import (
     CartesianSegment,
     Configure,
     Enable,
+    EStop,
     Hello,
     Home,
     Keep,
     Refused,
+    Reset,
     Segment,
+    Stop,
+    Tool,
 )
 from tests.firmware.board_processor import SteppedBoard
+from tests.firmware.clock_tree import ClockTree
 from tests.firmware.processor import Cost
 
 CPU_HZ, TICK_HZ, BYTES_HZ = 168_000_000, 200_000, 92_160
@@ -36,6 +41,7 @@ INTERRUPT = 24  # cycles to enter and leave one: Cortex-M4 technical reference m
 STEP, SERIAL = "step interrupt", "serial interrupt, a byte"
 CONTROL, LINE_CONTROL = "control interrupt", "control interrupt, straight line"
 SEGMENT, LINE_SEGMENT = "main loop, a segment", "main loop, a Cartesian segment"
+LOCK = "main loop, keeping control waiting"
 SEGMENTS_HZ = 100  # as the controller sends them
 CALLED = ("dv_forward", "dv_inverse", "dv_frame_read")
 
@@ -98,7 +104,7 @@ def configuration(joints: int) -> Configure:
 
 def homed_board(joints: int) -> SteppedBoard:
     """Enabled, and homed by switches that are pressed in their turn."""
-    board = SteppedBoard(built("f407vet6.elf"), crystal_hz=25_000_000)
+    board = SteppedBoard(built("f407vet6.elf"), ClockTree(25_000_000))
     for command in (Hello(1), configuration(joints), Enable(on=True)):
         board.send(command)
     board.run(10)
@@ -136,7 +142,7 @@ def segments(board: SteppedBoard, joints: int) -> list[Segment]:
     return built_up
 
 
-def line(board: SteppedBoard) -> list[CartesianSegment]:
+def line(board: SteppedBoard, *, epoch: int) -> list[CartesianSegment]:
     """LINE along x, from now on."""
     x, y, z = load_robot("stm32").forward((0.0,) * 3)
     made: list[CartesianSegment] = []
@@ -146,7 +152,7 @@ def line(board: SteppedBoard) -> list[CartesianSegment]:
         speed = end_speed
         made.append(
             CartesianSegment(
-                epoch=2,
+                epoch=epoch,
                 index=index,
                 t_end=t_end,
                 duration=ms * MS,
@@ -181,19 +187,51 @@ def drive(
     return received, steps, pieces, board.processor.watched
 
 
+def arm(board: SteppedBoard, *, epoch: int) -> Arm:
+    """At rest, from now on."""
+    board.send(Keep(board.now))
+    board.run(10)
+    board.said()
+    assert board.telemetry is not None
+    return Arm(epoch=epoch, t_start=board.now, counts=board.telemetry.counts)
+
+
+def trouble(board: SteppedBoard) -> list[Cost]:
+    """Costs of the pieces in which a line ends by a segment that leads nowhere. Then all the
+    messages that have not been sent yet.
+    """
+    board.send(arm(board, epoch=3))
+    good = line(board, epoch=3)
+    last = good[-1]
+    bad = replace(last, index=2, t_end=last.t_end + last.duration, p=(1 << 30, 0, 0))
+    for segment in good:
+        board.send(segment)
+    pieces: list[Cost] = []
+    for tick in range(100 * MS):
+        if tick == 50 * MS:
+            board.send(bad)
+        _, piece = board.tick()
+        if piece is not None:
+            pieces.append(piece)
+            board.poll()
+    assert any(isinstance(m, Refused) for m in board.said())
+    assert board.state() is BoardState.HALTED, board.telemetry
+    tool = Tool(on=True, servo_angle=0.0)
+    for message in (tool, Stop(), EStop(), Reset(), Enable(on=True), Enable(on=False)):
+        board.send(message)
+    return pieces
+
+
 @cache
 def budget(joints: int) -> dict[str, Spread]:
     """By name: contexts, and functions that are called in them."""
     board = homed_board(joints)
     byte = board.byte()
-    turns = Arm(epoch=1, t_start=board.now, counts=(0,) * joints)
+    turns = arm(board, epoch=1)
     received, steps, pieces, called = drive(board, turns, segments(board, joints))
-    board.send(Keep(board.now))
-    board.run(10)
-    board.said()
-    assert board.telemetry is not None
-    straight = Arm(epoch=2, t_start=board.now, counts=board.telemetry.counts)
-    line_received, _, line_pieces, line_called = drive(board, straight, line(board))
+    straight = arm(board, epoch=2)
+    line_received, _, line_pieces, line_called = drive(board, straight, line(board, epoch=2))
+    line_pieces += trouble(board)
     functions = {name: called[name] + line_called[name] for name in CALLED}
     return {
         STEP: spread(steps),
@@ -202,8 +240,18 @@ def budget(joints: int) -> dict[str, Spread]:
         SERIAL: spread([byte]),
         SEGMENT: spread(received),
         LINE_SEGMENT: spread(line_received),
+        LOCK: spread(board.locks),
         **{name: spread(costs) for name, costs in functions.items()},
     }
+
+
+def left(joints: int) -> float:
+    """Of the processor's cycles, beside the interrupts of every axis at its top speed and of a link
+    that is full both ways.
+    """
+    costs = budget(joints)
+    per_second = {STEP: TICK_HZ, SERIAL: 2 * BYTES_HZ}
+    return 1 - sum((costs[n].mean.cycles + INTERRUPT) * hz for n, hz in per_second.items()) / CPU_HZ
 
 
 def share(joints: int) -> float:

@@ -77,6 +77,7 @@ def library() -> c.CDLL:
         "run": [host, u32, c.POINTER(c.c_uint16)],
         "set_inputs": [host, c.c_uint8],
         "control": [host],
+        "set_meanwhile": [host, u32],
         "look": [host, c.POINTER(View)],
     }
     for name, types in arguments.items():
@@ -196,6 +197,12 @@ class CBoard:
         self._to_boundary = self._tick_hz // 1000 - after
         self._dv.dv_host_set_inputs(self._host, self._levels())
         self._dv.dv_host_control(self._host)
+
+    def let_pass(self, pieces: int) -> None:
+        """From a boundary on: while the next segment is judged, with their control."""
+        assert self._to_boundary == self._tick_hz // 1000
+        self._dv.dv_host_set_inputs(self._host, self._levels())
+        self._dv.dv_host_set_meanwhile(self._host, pieces)
 
     def press_estop(self, pressed: bool) -> None:
         self._estop = pressed

@@ -11,7 +11,7 @@ from typing import Any, Protocol
 
 from capstone import CS_ARCH_ARM, CS_MODE_MCLASS, CS_MODE_THUMB, Cs
 from elftools.elf.elffile import ELFFile
-from unicorn import UC_ARCH_ARM, UC_HOOK_BLOCK, UC_MODE_MCLASS, UC_MODE_THUMB
+from unicorn import UC_ARCH_ARM, UC_HOOK_BLOCK, UC_HOOK_CODE, UC_MODE_MCLASS, UC_MODE_THUMB
 from unicorn.arm_const import (
     UC_ARM_REG_LR,
     UC_ARM_REG_PC,
@@ -52,6 +52,16 @@ class Registers:
 
 
 @dataclass(frozen=True, slots=True)
+class Access:
+    """Of a peripheral's register: how far the processor had come by then."""
+
+    address: int
+    written: int | None  # None: it was read
+    cycles: int  # ever, estimated
+    barriers: int  # ever: DSB
+
+
+@dataclass(frozen=True, slots=True)
 class Cost:
     instructions: int
     cycles: int  # estimated, without wait states
@@ -80,15 +90,37 @@ class Processor:
         for start, size in PERIPHERALS:
             self._uc.mmio_map(start, size, self._read, start, self._write, start)
         self._meter = _Meter(self._uc)
+        self._accesses: list[Access] | None = None
+        self._cycles = self._barriers = 0
 
     def _peripheral(self, address: int) -> Peripheral:
         return self._peripherals.setdefault(address - address % BLOCK, Registers())
 
     def _read(self, _uc: Uc, offset: int, _size: int, start: Any) -> int:
+        self._accessed(start + offset, None)
         return self._peripheral(start + offset).read(offset % BLOCK)
 
     def _write(self, _uc: Uc, offset: int, _size: int, value: int, start: Any) -> None:
+        self._accessed(start + offset, value)
         self._peripheral(start + offset).write(offset % BLOCK, value)
+
+    def _accessed(self, address: int, written: int | None) -> None:
+        if self._accesses is not None:
+            self._accesses.append(Access(address, written, self._cycles, self._barriers))
+
+    def log_accesses(self) -> list[Access]:
+        """Of peripherals, from now on, in their order."""
+        self._accesses = []
+        decoder = Cs(CS_ARCH_ARM, CS_MODE_THUMB | CS_MODE_MCLASS)
+
+        def step(uc: Uc, address: int, size: int, _data: Any) -> None:
+            code = bytes(uc.mem_read(address, size))
+            _, _, name, operands = next(decoder.disasm_lite(code, address))
+            self._cycles += _cycles(name, operands)
+            self._barriers += name == "dsb"
+
+        self._uc.hook_add(UC_HOOK_CODE, step)
+        return self._accesses
 
     def reset(self, until: str) -> None:
         """From reset to the first call of the function `until`."""
@@ -118,6 +150,10 @@ class Processor:
     def watch(self, *functions: str) -> None:
         """What calls of these cost while `cost` is measured is kept in `watched`."""
         self._meter.watch({self.symbols[name]: name for name in functions})
+
+    def watch_between(self, begin: str, end: str) -> list[Cost]:
+        """What passes from each call of `begin` to the next of `end`, while `cost` is measured."""
+        return self._meter.watch_between(self.symbols[begin], self.symbols[end])
 
     @property
     def watched(self) -> dict[str, list[Cost]]:
@@ -176,6 +212,9 @@ class _Meter:
         self._names: dict[int, str] = {}
         self._open: list[tuple[str, int, int, int]] = []  # name, return address, and so far
         self.watched: dict[str, list[Cost]] = {}
+        self._ends: tuple[int, int] | None = None
+        self._began = Cost(0, 0)
+        self._between: list[Cost] = []
         self.instructions = self.cycles = 0
         # From the first block on: code that has run without a hook never meets one.
         uc.hook_add(UC_HOOK_BLOCK, self._block)
@@ -183,6 +222,19 @@ class _Meter:
     def watch(self, names: dict[int, str]) -> None:
         self._names = names
         self.watched = {name: [] for name in names.values()}
+
+    def watch_between(self, begin: int, end: int) -> list[Cost]:
+        self._ends = begin, end
+        return self._between
+
+    def _note_between(self, address: int) -> None:
+        begin, end = self._ends or (None, None)
+        if address == begin:
+            self._began = Cost(self.instructions, self.cycles)
+        elif address == end:
+            self._between.append(
+                Cost(self.instructions - self._began.instructions, self.cycles - self._began.cycles)
+            )
 
     def __enter__(self) -> None:
         self.instructions = self.cycles = self._next = 0
@@ -198,6 +250,7 @@ class _Meter:
         if self._open and address == self._open[-1][1]:
             name, _, instructions, cycles = self._open.pop()
             self.watched[name].append(Cost(self.instructions - instructions, self.cycles - cycles))
+        self._note_between(address)
         if address in self._names:
             back = self._uc.reg_read(UC_ARM_REG_LR) & ~1
             self._open.append((self._names[address], back, self.instructions, self.cycles))

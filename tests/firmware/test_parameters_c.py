@@ -119,9 +119,15 @@ def test_what_makes_no_sense_is_refused_by_both(changed):
     assert c_library.parameters_from(configure, tick_hz=TICK_HZ) is None
 
 
-@pytest.mark.parametrize("tick_hz", [0, 999, 200_001, 501_000, (1 << 32) - 1])
+@pytest.mark.parametrize("tick_hz", [0, 10_000, 19_000, 200_001, 501_000, (1 << 32) - 1])
 def test_a_tick_that_is_out_of_bounds(tick_hz):
     assert c_library.parameters_from(STM32, tick_hz=tick_hz) is None
+
+
+@pytest.mark.parametrize(("tick_hz", "moves"), [(19_000, False), (20_000, True)])
+def test_a_board_that_is_too_slow_takes_none(tick_hz, moves):
+    assert (parameters_from(STM32, tick_hz=tick_hz) is not None) == moves
+    assert (c_library.parameters_from(STM32, tick_hz=tick_hz) is not None) == moves
 
 
 @pytest.mark.parametrize("configure", [STM32, gantry(2).configure], ids=["delta", "gantry"])
@@ -152,7 +158,7 @@ def wild(chance: random.Random) -> c_library.CCase:
             old[chance.randrange(len(old))] = value if real else whole
         else:
             setattr(case.configure, name, value if isinstance(old, float) else whole)
-    case.tick_hz = chance.choice([200_000, 40_000, 1000, 500_000, chance.getrandbits(32)])
+    case.tick_hz = chance.choice([200_000, 40_000, 20_000, 500_000, chance.getrandbits(32)])
     case.ticks = chance.choice([160, 800, 10_000, chance.getrandbits(32)])
     size = chance.choice([1 << 10, 1 << 20, (1 << 31) - 1])
     for array in (case.start.p, case.start.v, case.end.p, case.end.v):

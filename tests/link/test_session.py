@@ -60,6 +60,10 @@ def test_it_greets_configures_and_arms_nothing_by_itself() -> None:
         ([HELLO, m.Configured(DIGEST + 1)], "configuration"),
         ([HELLO, m.Refused("configure", m.Refusal.STATE)], "another robot"),
         (
+            [replace(HELLO, tick_hz=10_000), m.Refused("configure", m.Refusal.CONFIGURATION)],
+            "clock",
+        ),
+        (
             [HELLO, m.Configured(DIGEST), telemetry(), telemetry(flags=m.TelemetryFlags.NONE)],
             "restarted",
         ),

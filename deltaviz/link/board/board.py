@@ -185,10 +185,10 @@ class SimulatedBoard:
             self._reports.say(Configured(robot.hash))
             return
         parameters = parameters_from(message, tick_hz=self._tick_hz)
-        if self.state is not BoardState.DISABLED:
-            self._reports.refuse(message, Refusal.STATE)
-        elif parameters is None:
+        if parameters is None:
             self._reports.refuse(message, Refusal.CONFIGURATION)
+        elif self.state is not BoardState.DISABLED:
+            self._reports.refuse(message, Refusal.STATE)
         else:
             self._take_configuration(parameters)
 

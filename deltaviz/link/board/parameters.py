@@ -10,6 +10,7 @@ from deltaviz.link.board.five_bar import FiveBar
 from deltaviz.link.board.kinematics import Kinematics
 from deltaviz.link.board.rotary_delta import RotaryDelta
 from deltaviz.link.messages import Configure, Options, RobotKind
+from deltaviz.link.rules import TICK_HZ_MIN
 
 _TO_Q32 = 8  # from 2^-24
 _LEAST_ACCELERATION = 1 << 8  # 2^-24 microsteps per ms²: 2^16 in those of the brake
@@ -81,7 +82,8 @@ def _makes_sense(configure: Configure, tick_hz: int) -> bool:
     per_joint += (c.homing_max_travel, c.ready, c.base_radius, c.effector_radius, c.upper_arm)
     per_joint += (c.forearm, c.azimuth)
     return (
-        1 <= joints <= 4
+        tick_hz >= TICK_HZ_MIN
+        and 1 <= joints <= 4
         and all(len(values) == joints for values in per_joint)
         and c.homing_direction in (-1, 1)
         and all(

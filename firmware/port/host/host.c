@@ -16,6 +16,7 @@ struct dv_host {
     size_t sent_size, write_room;
     uint8_t levels;
     bool locked, held;
+    uint32_t meanwhile; /* pieces */
     bool drivers_known, drivers_on, drivers_active_high;
     bool tool_on;
     float servo_angle;
@@ -87,6 +88,10 @@ static void unlock_control(void *context)
     struct dv_host *host = context;
     require(host->locked);
     host->locked = false;
+    for (; host->meanwhile > 0; host->meanwhile--) {
+        dv_host_run(host, UINT32_MAX, NULL);
+        dv_board_piece(&host->board);
+    }
 }
 
 static void hold_steps(void *context)
@@ -207,6 +212,11 @@ uint32_t dv_host_run(struct dv_host *host, uint32_t ticks, uint16_t *pins)
 void dv_host_set_inputs(struct dv_host *host, uint8_t levels)
 {
     host->levels = levels;
+}
+
+void dv_host_set_meanwhile(struct dv_host *host, uint32_t pieces)
+{
+    host->meanwhile = pieces;
 }
 
 void dv_host_control(struct dv_host *host)

@@ -58,6 +58,11 @@ void dv_host_set_inputs(struct dv_host *host, uint8_t levels);
 /* The control interrupt. */
 void dv_host_control(struct dv_host *host);
 
+/* The next time that the main loop lets control in, so many pieces pass before it keeps it out again:
+ * while a segment is judged, if one comes next.
+ */
+void dv_host_set_meanwhile(struct dv_host *host, uint32_t pieces);
+
 void dv_host_look(const struct dv_host *host, struct dv_host_view *view);
 
 #endif

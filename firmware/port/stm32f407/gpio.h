@@ -5,6 +5,7 @@
 #define GPIO_H
 
 #include "io.h"
+#include "peripherals.h"
 #include "regs.h"
 
 #include <stdbool.h>
@@ -62,7 +63,7 @@ static inline bool pin_read(uint32_t pin)
 /* Ports A to E. */
 static inline void gpio_start(void)
 {
-    RCC_AHB1ENR |= 31u * RCC_AHB1ENR_GPIOAEN;
+    peripheral_enable(&RCC_AHB1ENR, 31u * RCC_AHB1ENR_GPIOAEN);
 }
 
 #endif

@@ -1,6 +1,6 @@
 /* The registers of the STM32F407 that this firmware uses, by the names of its reference manual
  * (RM0090): PERIPHERAL_REGISTER, and PERIPHERAL_REGISTER_FIELD for the bits of a field. The core's
- * are those of the Cortex-M4 (PM0214). Held to published data by tests/firmware/test_registers.py.
+ * are those of the Cortex-M4 (PM0214). Held to published data by tests/firmware/test_chip_data.py.
  */
 #ifndef REGS_H
 #define REGS_H
@@ -30,6 +30,7 @@
 #define RCC_CFGR_SWS1 (1u << 3)
 #define RCC_CFGR_PPRE1 (7u << 10)
 #define RCC_CFGR_PPRE2 (7u << 13)
+#define RCC_CFGR_RTCPRE (31u << 16)
 #define RCC_AHB1ENR REGISTER(0x40023830u)
 #define RCC_AHB1ENR_GPIOAEN (1u << 0)
 #define RCC_AHB2ENR REGISTER(0x40023834u)
@@ -39,6 +40,8 @@
 #define RCC_APB1ENR_TIM3EN (1u << 1)
 #define RCC_APB1ENR_USART2EN (1u << 17)
 #define RCC_APB1ENR_PWREN (1u << 28)
+#define RCC_APB2ENR REGISTER(0x40023844u)
+#define RCC_APB2ENR_TIM11EN (1u << 18)
 
 /* Power and flash. */
 #define PWR_CR REGISTER(0x40007000u)
@@ -56,7 +59,7 @@
 #define GPIO_BSRR(port) REGISTER(0x40020018u + 0x400u * (port))
 #define GPIO_AFRL(port) REGISTER(0x40020020u + 0x400u * (port))
 
-/* Timers: TIM2 ticks, TIM3 moves the servo. */
+/* Timers: TIM2 ticks, TIM3 moves the servo, TIM11 measures the crystal. */
 #define TIM2_CR1 REGISTER(0x40000000u)
 #define TIM2_CR1_CEN (1u << 0)
 #define TIM2_DIER REGISTER(0x4000000Cu)
@@ -77,6 +80,19 @@
 #define TIM3_PSC REGISTER(0x40000428u)
 #define TIM3_ARR REGISTER(0x4000042Cu)
 #define TIM3_CCR1 REGISTER(0x40000434u)
+#define TIM11_CR1 REGISTER(0x40014800u)
+#define TIM11_CR1_CEN (1u << 0)
+#define TIM11_SR REGISTER(0x40014810u)
+#define TIM11_SR_CC1IF (1u << 1)
+#define TIM11_CCMR1 REGISTER(0x40014818u)
+#define TIM11_CCMR1_CC1S (3u << 0)
+#define TIM11_CCMR1_IC1PSC (3u << 2)
+#define TIM11_CCER REGISTER(0x40014820u)
+#define TIM11_CCER_CC1E (1u << 0)
+#define TIM11_ARR REGISTER(0x4001482Cu)
+#define TIM11_CCR1 REGISTER(0x40014834u)
+#define TIM11_OR REGISTER(0x40014850u)
+#define TIM11_OR_TI1_RMP (3u << 0)
 
 /* Serial ports: USART2 is the link; in the emulator USART1 is its bench, USART3 its pace. */
 #define USART1_SR REGISTER(0x40011000u)

@@ -1,8 +1,9 @@
 #include "serial.h"
 
 #include BOARD_HEADER
+#include "gpio.h"
 #include "interrupts.h"
-#include "io.h"
+#include "peripherals.h"
 #include "ring.h"
 
 /* Of what is to be sent, so that sending does not keep the step interrupt waiting. */
@@ -12,9 +13,12 @@ static struct ring received, to_send;
 
 void serial_start(const struct clock *clock)
 {
-    RCC_APB1ENR |= RCC_APB1ENR_USART2EN;
+    peripheral_enable(&RCC_APB1ENR, RCC_APB1ENR_USART2EN);
+    pin_pull(PIN_SERIAL_RX, GPIO_PULL_UP); /* without an adapter it hears silence, not noise */
+    pin_function(PIN_SERIAL_RX, PIN_SERIAL_FUNCTION);
     USART2_BRR = (clock->serial_hz + BAUD / 2u) / BAUD;
     USART2_CR1 = USART2_CR1_UE | USART2_CR1_TE | USART2_CR1_RE | USART2_CR1_RXNEIE;
+    pin_function(PIN_SERIAL_TX, PIN_SERIAL_FUNCTION); /* its transmitter holds it high by now */
     interrupt_enable(IRQ_USART2, PRIORITY_SERIAL);
 }
 

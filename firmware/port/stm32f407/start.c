@@ -1,6 +1,7 @@
 /* From reset to `main`, and where a fault ends. */
 #include "drivers.h"
 #include "interrupts.h"
+#include "tool.h"
 
 #include <stdint.h>
 
@@ -14,11 +15,12 @@ void USART2_IRQHandler(void);
 void USART3_IRQHandler(void);
 void PendSV_Handler(void);
 
-/* Drivers off, no step any more; then the watchdog resets the processor. */
+/* Drivers and tool off, no step any more; then the watchdog resets the processor. */
 static void fault_handler(void)
 {
     interrupts_hold(PRIORITY_STEP);
     drivers_float();
+    tool_off();
     for (;;) {
     }
 }

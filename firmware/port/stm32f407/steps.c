@@ -4,6 +4,7 @@
 #include "gpio.h"
 #include "interrupts.h"
 #include "led.h"
+#include "peripherals.h"
 #include "step_timing.h"
 
 #define STEP_PORT (PIN_STEP_1 >> 4)
@@ -37,7 +38,7 @@ void steps_start(struct dv_board *board, const struct clock *clock)
     stepped = board;
     SCB_SHPR3 = FIELD(SCB_SHPR3_PRI_14, PRIORITY_CONTROL);
     interrupt_enable(IRQ_TIM2, PRIORITY_STEP);
-    RCC_APB1ENR |= RCC_APB1ENR_TIM2EN;
+    peripheral_enable(&RCC_APB1ENR, RCC_APB1ENR_TIM2EN);
     TIM2_DIER = TIM2_DIER_UIE;
     TIM2_CR1 = TIM2_CR1_CEN;
     TIM2_ARR = TICK_RELOAD(clock->timer_hz, clock->tick_hz);

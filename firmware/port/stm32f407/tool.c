@@ -2,6 +2,7 @@
 
 #include BOARD_HEADER
 #include "gpio.h"
+#include "peripherals.h"
 
 #define COUNT_HZ 1000000u /* the timer counts microseconds */
 #define PERIOD_US 20000u
@@ -14,9 +15,9 @@
 
 void tool_start(const struct clock *clock)
 {
-    pin_write(PIN_TOOL, false);
+    tool_off();
     pin_mode(PIN_TOOL, GPIO_OUTPUT);
-    RCC_APB1ENR |= RCC_APB1ENR_TIM3EN;
+    peripheral_enable(&RCC_APB1ENR, RCC_APB1ENR_TIM3EN);
     TIM3_PSC = clock->timer_hz / COUNT_HZ - 1u;
     TIM3_ARR = PERIOD_US - 1u;
     TIM3_CCR1 = 0; /* no pulse */
@@ -33,4 +34,9 @@ void tool_write(bool on, float angle)
     us = us < LEAST_US ? LEAST_US : us > MOST_US ? MOST_US : us;
     pin_write(PIN_TOOL, on);
     TIM3_CCR1 = (uint32_t)us;
+}
+
+void tool_off(void)
+{
+    pin_write(PIN_TOOL, false);
 }

@@ -12,4 +12,7 @@ void tool_start(const struct clock *clock);
 /* `angle` in rad; beyond what a servo has, it goes to its end. */
 void tool_write(bool on, float angle);
 
+/* Off. Also after a fault, so it relies on nothing. */
+void tool_off(void);
+
 #endif

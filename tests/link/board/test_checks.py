@@ -16,15 +16,18 @@ from deltaviz.link.board.limits import Limits, Objection
 from deltaviz.link.board.parameters import parameters_from
 from deltaviz.link.configuration import configure_from
 from deltaviz.link.messages import (
+    PROTOCOL_VERSION,
     BoardState,
     Configured,
+    Enable,
+    Hello,
     Refusal,
     Refused,
     RobotKind,
     StopCause,
     Stopped,
 )
-from tests.link.board.bench import simulated_only
+from tests.link.board.bench import Host, simulated_only
 
 TOOL_AXIS = Path(__file__).parents[3] / "docs" / "examples" / "stm32-tool.toml"
 PRESETS = ["stm32", "trossen", "zheng2023", "deltadraw", "fivebar"]
@@ -285,6 +288,19 @@ def test_arms_are_those_of_three_joints(make_configure):
     board = SimulatedBoard(start_homed=True)
     board.receive(replace(make_configure(), kind=RobotKind.ROTARY_DELTA))
     assert Refused("configure", Refusal.CONFIGURATION) in board.take()
+
+
+@pytest.mark.parametrize("estop", [False, True])
+def test_a_board_without_its_clock_takes_no_robot_and_no_enable(make_board, make_configure, estop):
+    """At 16 MHz; and it says so in every state, for its host to explain."""
+    board = make_board(tick_hz=10_000)
+    host = Host(board)
+    host.send(Hello(PROTOCOL_VERSION))
+    board.press_estop(estop)
+    board.advance(20)
+    assert board.state is (BoardState.ESTOP if estop else BoardState.DISABLED)
+    assert Refused("configure", Refusal.CONFIGURATION) in host.send(make_configure())
+    assert Refused("enable", Refusal.CONFIGURATION) in host.send(Enable(on=True))
 
 
 def test_another_configuration_needs_a_disabled_board(bench, make_configure):

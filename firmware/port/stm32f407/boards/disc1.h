@@ -5,7 +5,6 @@
 #include "silicon.h"
 
 #define BOARD_NAME "STM32F407G-DISC1"
-#define BOARD_HSE_HZ 8000000u /* X2 */
 
 /* LD6, blue: lit by a high level. */
 #define PIN_LED (PORT_D | 15u)

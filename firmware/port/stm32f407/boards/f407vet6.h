@@ -7,7 +7,6 @@
 #include "silicon.h"
 
 #define BOARD_NAME "F407VET6"
-#define BOARD_HSE_HZ 25000000u /* Y2 */
 
 /* D2: lit by a low level. */
 #define PIN_LED (PORT_A | 6u)

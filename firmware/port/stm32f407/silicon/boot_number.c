@@ -3,6 +3,7 @@
  */
 #include "boot_number.h"
 
+#include "peripherals.h"
 #include "regs.h"
 
 #define TRIES 10000u /* a number takes 40 cycles of 48 MHz */
@@ -11,7 +12,7 @@ __attribute__((section(".kept"))) static uint32_t kept;
 
 static uint32_t random_number(void)
 {
-    RCC_AHB2ENR |= RCC_AHB2ENR_RNGEN;
+    peripheral_enable(&RCC_AHB2ENR, RCC_AHB2ENR_RNGEN);
     RNG_CR = RNG_CR_RNGEN;
     for (uint32_t tries = TRIES; tries > 0; tries--) {
         if ((RNG_SR & RNG_SR_DRDY) != 0) {
