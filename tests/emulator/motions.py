@@ -31,7 +31,9 @@ class Motion:
 
 
 def motions(passed: Sequence[Passed], *, ticks_per_ms: int) -> list[Motion]:
-    """Those of one board between power-up and its end, in which anything was commanded."""
+    """Those of one board between power-up and its end, in which anything was begun: of an epoch
+    that was stopped before, nothing was to be followed.
+    """
     arms: dict[int, Arm] = {}
     segments: dict[int, list[Segment]] = {}
     told: dict[int, list[Telemetry]] = {}
@@ -45,16 +47,21 @@ def motions(passed: Sequence[Passed], *, ticks_per_ms: int) -> list[Motion]:
                 told.setdefault(telemetry.epoch, []).append(telemetry)
             case _:
                 pass
-    return [
+    begun = (
         _motion(arms[epoch], pieces, told.get(epoch, []), ticks_per_ms)
         for epoch, pieces in segments.items()
-    ]
+    )
+    return [motion for motion in begun if motion is not None]
 
 
-def _motion(arm: Arm, pieces: list[Segment], told: list[Telemetry], ticks_per_ms: int) -> Motion:
+def _motion(
+    arm: Arm, pieces: list[Segment], told: list[Telemetry], ticks_per_ms: int
+) -> Motion | None:
     assert [piece.index for piece in pieces] == list(range(len(pieces)))
     armed, stopped = _armed(told)
     ends = _ends(pieces, armed)
+    if not ends:
+        return None
     path = CommandedPath(
         arm.counts,
         np.array([end - piece.duration for end, piece in zip(ends, pieces, strict=False)]),

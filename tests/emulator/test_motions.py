@@ -85,6 +85,11 @@ def test_what_is_stopped_was_to_be_followed_as_long_as_the_board_took_it() -> No
     assert motion.until == 1160
 
 
+def test_what_is_stopped_before_it_has_begun_is_no_motion() -> None:
+    said = [*TWICE[:4], Stop(at_once=False), told(1100, NONE_TAKEN, 1100, BoardState.HALTED)]
+    assert motions([Passed(each, 0) for each in said], ticks_per_ms=MS) == []
+
+
 def test_a_pause_in_a_motion_is_no_motion() -> None:
     said = [*TWICE[:4], told(1010, 0, 1080 + PIECE), told(1100, 1, 1085 + 2 * PIECE)]
     with pytest.raises(AssertionError, match="pause"):
