@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 import urllib.request
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
@@ -24,14 +25,29 @@ PICTURES: dict[str, tuple[str, list[tuple[float, float, float]]]] = {
     ),
     "fivebar": ("fivebar", [(60, 0, -150), (80, 0, -190), (-70, 0, -210), (-50, 0, -170)]),
     "workspace": ("stm32", []),
+    "workspace-paper": ("deltadraw", []),
     "fivebar-workspace": ("fivebar", []),
 }
-# What is chosen in the scene's folder "Workspace" before a picture is taken, and a colour.
-SHOWN: dict[str, tuple[list[str], str]] = {
-    "workspace": (["Reach", "Section X", "Section Z"], "Conditioning"),
-    "fivebar-workspace": (["Reach", "Coloured plane"], "Conditioning"),
+
+
+@dataclass(frozen=True)
+class Shown:
+    """What is chosen in the console's view before a picture is taken."""
+
+    layers: tuple[str, ...]
+    colours: str = "One colour"
+    thing: str = "None"  # that lies in the scene
+    told: str = "drawn within"  # what the view tells when all is there
+
+
+SHOWN = {
+    "workspace": Shown(("Reach", "Section X", "Section Z"), "Conditioning"),
+    "workspace-paper": Shown(
+        ("Reach", "Largest cylinder"), thing="Letter paper", told="Largest cylinder"
+    ),
+    "fivebar-workspace": Shown(("Reach", "Coloured plane"), "Conditioning"),
 }
-PENDANT = "390x844"  # where the scene has no panel, and the console's view has its inputs
+PENDANT = "390x844"  # where the scene has no panel
 FLAGS = [
     "--no-sandbox",
     "--use-angle=swiftshader",
@@ -87,30 +103,28 @@ def take(
     for place in way:
         go(page, url, place)
     if shown := SHOWN.get(picture):
-        (show_on_the_pendant if size == SIZES[PENDANT] else show_workspace)(page, *shown)
+        show(page, shown, wide=size != SIZES[PENDANT])
     page.wait_for_timeout(9000)  # for the pictures only: drawing catches up, notices go
     page.screenshot(path=DOCS / name)
     context.close()
 
 
-def show_workspace(page: Page, layers: list[str], colours: str) -> None:
-    scene = page.frame_locator("#scene")
-    for folder in ("Angles", "Position", "Robot", "Workspace"):  # the last one is opened
-        scene.get_by_text(folder, exact=True).first.click()
-    for layer in layers:
-        scene.get_by_label(layer, exact=True).check()
-    scene.get_by_label("Colours", exact=True).click()
-    scene.get_by_role("option", name=colours, exact=True).click()
-    scene.get_by_text("drawn within").wait_for(timeout=LONG)
-
-
-def show_on_the_pendant(page: Page, layers: list[str], colours: str) -> None:
-    page.locator(".tabs [data-view=view]").click()
-    for layer in layers:
-        page.get_by_label(layer, exact=True).check(timeout=LONG)
-    page.get_by_label("Colours", exact=True).select_option(colours)
-    page.get_by_text("drawn within").wait_for(timeout=LONG)
-    page.get_by_text("drawn within").scroll_into_view_if_needed()
+def show(page: Page, shown: Shown, *, wide: bool) -> None:
+    opener = page.locator("#view-toggle" if wide else ".tabs [data-view=view]")
+    opener.click()
+    view = page.locator("#view")
+    for layer in shown.layers:
+        view.get_by_label(layer, exact=True).check(timeout=LONG)
+    view.get_by_label("Colours").select_option(shown.colours)
+    if view.get_by_label("Object").count():
+        view.get_by_label("Object").select_option(shown.thing)
+    told = view.locator(".told", has_text=shown.told)
+    told.wait_for(timeout=LONG)
+    told.scroll_into_view_if_needed()
+    if wide:  # the same in the scene's own panel
+        opener.click()
+        for folder in ("Angles", "Position", "Robot", "Workspace"):  # the last one is opened
+            page.frame_locator("#scene").get_by_text(folder, exact=True).first.click()
 
 
 def go(page: Page, url: str, place: tuple[float, float, float]) -> None:
