@@ -44,11 +44,9 @@ traffic: it takes 1.4 times as long as copying the poses and doing nothing, and 
 no more than some 13 times as fast as the C code. On two threads forward takes as long as the copy
 and passes ten times.""",
     "workspace": """\
-A loop in Python runs on some of the nodes only, and needs no memory for them. Numpy's memory
-holds its points too, which a field makes from its axes as it goes. Where two threads are no
-quicker than one, look at the processor's time: it is the same for one and for two, so the work is
-shared out evenly and starting a thread costs nothing that shows; another program had the second
-core.
+The loop in Python runs on the nodes that its row tells of, and keeps none. Numpy's memory holds its
+points too, which a field makes from its axes as it goes. Two threads take half the time of one.
+Where they do not, but the processor's time is the same for one and for two, another program had a core.
 
 A field costs in proportion to its nodes, so with the cube of 1/spacing: half the spacing, eight
 times the time. Marching through it and the faces of its boundary grow with the square. The
