@@ -36,6 +36,25 @@ BENCHMARKS = {
         ["latency", "--moves", "10", "--link", "emulate://"],
     ),
 }
+# What a reader may ask of a section's numbers: it stands below them, also when measured anew.
+NOTES = {
+    "kinematics": """\
+Forward on one thread is short of ten times the C code, by little. What bounds it is mostly memory
+traffic: it takes 1.4 times as long as copying the poses and doing nothing, and that copy alone is
+no more than some 13 times as fast as the C code. On two threads forward takes as long as the copy
+and passes ten times.""",
+    "workspace": """\
+The loop in Python runs on the nodes that its row tells of, and keeps none. Numpy's memory holds its
+points too, which a field makes from its axes as it goes. Two threads take half the time of one.
+Where they do not, but the processor's time is the same for one and for two, another program had a
+core.
+
+A field costs in proportion to its nodes, so with the cube of 1/spacing: half the spacing, eight
+times the time. Marching through it and the faces of its boundary grow with the square. The
+tolerance of a boundary is another thing than the spacing: down to 0.5 mm refinement meets it on
+the same grid and for next to nothing; below, the grid becomes finer with the tolerance, and the
+cost grows about with the square.""",
+}
 HEAD = """# Measurements
 
 Made by `python -m benchmarks`, or `python -m benchmarks NAME` for one of them. Browsers draw in
@@ -51,7 +70,11 @@ def processor() -> str:
 
 
 def main() -> int:
-    """Measure what is named, or all; sections that are not measured stay as they are."""
+    """Measure what is named, or all; sections that are not measured stay as they are. `--notes`:
+    measure nothing, write the notes below them."""
+    if sys.argv[1:] == ["--notes"]:
+        PAGE.write_text(page(dict(read(PAGE.read_text()))))
+        return 0
     sections = dict(read(PAGE.read_text())) if PAGE.exists() else {}
     failed = False
     for name in sys.argv[1:] or BENCHMARKS:
@@ -76,16 +99,21 @@ def circumstances() -> str:
 
 
 def read(text: str) -> Iterator[tuple[str, str]]:
-    """Titles and texts of a page's sections."""
+    """Titles and texts of a page's sections, without their notes."""
     for section in text.split("\n## ")[1:]:
         title, _, body = section.partition("\n")
-        yield title, body.strip("\n")
+        measured, fence, _ = body.rpartition("```")
+        yield title, (measured + fence).strip("\n")
 
 
 def page(sections: dict[str, str]) -> str:
     """In the order of the benchmarks, whichever were measured last."""
-    titles = [title for title, _ in BENCHMARKS.values() if title in sections]
-    return "\n\n".join([HEAD, *(f"## {title}\n\n{sections[title]}" for title in titles)]) + "\n"
+    parts = [HEAD]
+    for name, (title, _) in BENCHMARKS.items():
+        if title in sections:
+            parts += [f"## {title}", sections[title]]
+            parts += [NOTES[name]] if name in NOTES else []
+    return "\n\n".join(parts) + "\n"
 
 
 if __name__ == "__main__":

@@ -4,8 +4,9 @@
 
 Points per second of the field on one thread and on two, with collisions and without; against plain
 numpy and against the scalar loop that the articles use, where all ask only whether the arms reach;
-the peak of memory that each adds; the boundary's levels for a changed geometry, and to 1 mm; and
-how the cost grows with the tolerance.
+the processor's time beside the clock's, and the peak of memory that each adds, its points
+included; how the cost of the field and of the marched boundary grows with the spacing of the nodes,
+and that of the refined boundary with the tolerance; the boundary's levels for a changed geometry.
 """
 
 from __future__ import annotations
@@ -14,9 +15,9 @@ import argparse
 import math
 import time
 import tracemalloc
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -24,25 +25,42 @@ from deltaviz import load_robot
 from deltaviz.mechanism import RotaryDelta
 from deltaviz.robots import Robot
 from deltaviz.robots.workspace import Limit, Margins, levels
+from deltaviz.robots.workspace.boundary import march
 from deltaviz.robots.workspace.cells import hull
 from deltaviz.robots.workspace.field import Grid, sample
 
 SCALAR_NODES = 100_000
 ROUNDS = 3
+SPACINGS = (16.0, 8.0, 4.0, 2.0)  # mm between the nodes of a field
+TOLERANCES = (4.0, 2.0, 1.0, 0.5, 0.25, 0.125)  # mm
 
 
-def measured(run: Callable[[], Any]) -> tuple[float, float]:
-    """(s, the least of some rounds; MB at its peak)."""
+class Cost(NamedTuple):
+    """s by the clock and of the processor's time, in the quickest of some rounds; MB at the peak.
+    Where two threads take as long as one but no more of the processor, another program had it."""
+
+    wall: float
+    processor: float
+    megabytes: float
+
+
+def measured(run: Callable[[], Any]) -> Cost:
     tracemalloc.start()
     run()
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
-    least = math.inf
-    for _ in range(ROUNDS):
-        start = time.perf_counter()
-        run()
-        least = min(least, time.perf_counter() - start)
-    return least, peak / 1e6
+    return Cost(*min(_timed(run) for _ in range(ROUNDS)), peak / 1e6)
+
+
+def _timed(run: Callable[[], Any]) -> tuple[float, float]:
+    start, processor = time.perf_counter(), time.process_time()
+    run()
+    return time.perf_counter() - start, time.process_time() - processor
+
+
+def power(fineness: Sequence[float], costs: Sequence[float]) -> float:
+    """The exponent with which the costs grow as spacing or tolerance shrinks."""
+    return -float(np.polyfit(np.log(fineness), np.log(costs), 1)[0])
 
 
 def by_numpy(mechanism: RotaryDelta, points: np.ndarray) -> np.ndarray:
@@ -82,37 +100,68 @@ def field(robot: Robot, nodes: int) -> None:
     assert box is not None
     grid = Grid.around(box, float(np.prod(box.size) / nodes) ** (1 / 3))
     count = math.prod(grid.shape)
-    points = np.stack(np.meshgrid(*grid.axes, indexing="ij"), axis=-1).reshape(-1, 3)
-    print(f"field of {robot.name}, {count} nodes       s   ns/node   million/s   MB")
+    print(f"field of {robot.name}, {count} nodes       s   processor s   ns/node   million/s   MB")
 
-    def told(name: str, seconds: float, megabytes: float, of: int = count) -> None:
-        print(f"  {name:32}{seconds:7.2f}{1e9 * seconds / of:9.0f}{of / seconds / 1e6:11.1f}"
-              f"{megabytes:8.0f}")  # fmt: skip
+    def told(name: str, cost: Cost, *, of: int = count, memory: bool = True) -> None:
+        print(f"  {name:32}{cost.wall:7.2f}{cost.processor:14.2f}{1e9 * cost.wall / of:10.0f}"
+              f"{of / cost.wall / 1e6:12.1f}"
+              + (f"{cost.megabytes:5.0f}" if memory else "    -"))  # fmt: skip
 
     reach, machine = Margins.of(robot, Limit.REACH), Margins.of(robot)
     free = replace(machine, collisions=None)
     for name, margins in (("reach", reach), ("all but collisions", free), ("all", machine)):
         for threads in (1, 2):
             told(f"{name}, {threads} thread{'s' * (threads > 1)}",
-                 *measured(lambda: sample(margins, grid, threads=threads)))  # noqa: B023 # fmt: skip
-    told("numpy, reach", *measured(lambda: by_numpy(mechanism, points)))
-    some = points[:: max(1, count // SCALAR_NODES)].tolist()
-    told("a loop in Python, reach", *measured(lambda: by_a_loop(mechanism, some)), of=len(some))
+                 measured(lambda: sample(margins, grid, threads=threads)))  # noqa: B023 # fmt: skip
+    told("numpy, reach, and its points", measured(lambda: by_numpy(mechanism, nodes_of(grid))))
+    some = nodes_of(grid)[:: max(1, count // SCALAR_NODES)].tolist()
+    told(f"a Python loop, reach, {len(some)} nodes", measured(lambda: by_a_loop(mechanism, some)),
+         of=len(some), memory=False)  # fmt: skip
+
+
+def nodes_of(grid: Grid) -> np.ndarray:
+    return np.stack(np.meshgrid(*grid.axes, indexing="ij"), axis=-1).reshape(-1, 3)
+
+
+def growth(robot: Robot) -> None:
+    """How cost grows as the nodes of a field come closer; the boundary marched through it, too."""
+    margins = Margins.of(robot)
+    box = hull(margins)
+    assert box is not None
+    print(f"spacing, {robot.name}, 1 thread      nodes   field s   march s    faces")
+    rows: list[tuple[int, float, float, int]] = []
+    for spacing in SPACINGS:
+        grid = Grid.around(box, spacing)
+        sampled = sample(margins, grid)
+        field_s, _ = min(_timed(lambda: sample(margins, grid)) for _ in range(ROUNDS))  # noqa: B023
+        march_s, _ = min(_timed(lambda: march(margins, sampled)) for _ in range(ROUNDS))  # noqa: B023
+        rows.append((math.prod(grid.shape), field_s, march_s, len(march(margins, sampled).faces)))
+        print(f"  {spacing:4g} mm               {rows[-1][0]:13}{field_s:10.3f}{march_s:10.3f}"
+              f"{rows[-1][3]:9}")  # fmt: skip
+    nodes, sampled_by, marched_by, faces = (power(SPACINGS, c) for c in zip(*rows, strict=True))
+    print(f"  grow with 1/spacing to the power{nodes:6.2f}{sampled_by:10.2f}{marched_by:10.2f}"
+          f"{faces:9.2f}")  # fmt: skip
 
 
 def boundaries(robot: Robot) -> None:
-    print(f"boundary of {robot.name}, 1 thread      s   faces   deviation mm")
+    print(f"boundary of {robot.name}, 1 thread      s   faces   deviation mm   cell mm")
     start = time.perf_counter()
     names = ("coarse", "coarse, refined", "within 1 mm", "again, finer grid")
     for name, level in zip(names, levels(robot), strict=False):
         seconds = time.perf_counter() - start
-        print(f"  {name:22}{seconds:10.2f}{len(level.faces):8}{level.deviation:12.2f}")
-    for tolerance in (4.0, 2.0, 1.0, 0.5, 0.25):
+        print(f"  {name:22}{seconds:10.2f}{len(level.faces):8}{level.deviation:15.2f}"
+              f"{level.cell:10.2f}")  # fmt: skip
+    spent: list[float] = []
+    for tolerance in TOLERANCES:
         start = time.perf_counter()
         *_, last = levels(robot, tolerance=tolerance)
-        seconds = time.perf_counter() - start
-        print(f"  to {tolerance:4g} mm            {seconds:10.2f}{len(last.faces):8}"
-              f"{last.deviation:12.2f}")  # fmt: skip
+        spent.append(time.perf_counter() - start)
+        print(f"  to {tolerance:5g} mm           {spent[-1]:10.2f}{len(last.faces):8}"
+              f"{last.deviation:15.2f}{last.cell:10.2f}")  # fmt: skip
+    half = len(TOLERANCES) // 2
+    above, below = power(TOLERANCES[:half], spent[:half]), power(TOLERANCES[half:], spent[half:])
+    print(f"  time grows with 1/tolerance to the power {above:.2f} to {TOLERANCES[half - 1]:g} mm, "
+          f"{below:.2f} from {TOLERANCES[half]:g} mm on")  # fmt: skip
 
 
 def changed(robot: Robot) -> None:
@@ -149,6 +198,7 @@ def main() -> None:
     robot = load_robot("stm32")
     list(levels(robot, tolerance=20))  # compiled code is loaded
     field(robot, chosen.nodes)
+    growth(robot)
     boundaries(robot)
     for name in ("stm32", "trossen", "zheng2023"):
         changed(load_robot(name))

@@ -2,29 +2,22 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
 MINUS = "−"
-ROUNDING = 0.1  # of half a unit: theirs may be cut off or rounded from a rounded number
 
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """`tolerance`: how far from `theirs` ours may be and still be the same number: half a unit of
-    the last digit they give. `why` explains a difference beyond it."""
+    """`digits`: how many they give after the point. `why` explains a difference."""
 
     what: str
     theirs: float
     ours: float
-    tolerance: float
+    digits: int
     unit: str = ""
     why: str = ""
-
-    @property
-    def same(self) -> bool:
-        return abs(self.ours - self.theirs) <= self.tolerance * (1 + ROUNDING)
 
 
 def agreement(rows: Iterable[tuple[str, float, float, str]]) -> str:
@@ -41,10 +34,9 @@ def agreement(rows: Iterable[tuple[str, float, float, str]]) -> str:
 def table(rows: Iterable[Row]) -> str:
     lines = ["| | theirs | ours | difference | |", "| --- | ---: | ---: | ---: | --- |"]
     for row in rows:
-        digits = max(0, round(-math.log10(2 * row.tolerance)))
-        theirs, ours = (f"{value:.{digits}f}" for value in (row.theirs, row.ours))
-        difference = row.ours - row.theirs
-        shown = "0" if row.same else f"{difference:+.{digits}f}"
+        theirs, ours = (f"{value:.{row.digits}f}" for value in (row.theirs, row.ours))
+        difference = float(ours) - float(theirs)  # of what is shown
+        shown = "0" if ours == theirs else f"{difference:+.{row.digits}f}"
         lines.append(
             _signs(f"| {row.what} | {theirs}{row.unit} | {ours}{row.unit} | {shown} | ")
             + f"{row.why} |"

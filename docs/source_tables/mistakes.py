@@ -18,10 +18,12 @@ TUTORIAL = {"upper_arm": 112.0, "forearm": 232.0, "azimuths_deg": (-90.0, 30.0, 
 F, E = 457.3, 115.0
 
 
-def drawn(joints: int = 3) -> np.ndarray:
+def drawn(
+    joints: int = 3, *, seed: int = 0, within_deg: tuple[float, float] = JOINTS_DEG
+) -> np.ndarray:
     """(n, joints) rad, evenly within -45° to 90°."""
-    low, high = np.radians(JOINTS_DEG)
-    return np.random.default_rng(0).uniform(low, high, (COUNT, joints))
+    low, high = np.radians(within_deg)
+    return np.random.default_rng(seed).uniform(low, high, (COUNT, joints))
 
 
 def tutorial() -> RotaryDelta:
@@ -53,9 +55,9 @@ def share_inside() -> float:
     return float((robot.jq(robot.forward(theta), theta) < 0).any(axis=-1).mean())
 
 
-def equation_12() -> float:
+def equation_12(seed: int = 0) -> float:
     """Median mm that the vector triple product, bracketed from the left, puts P off."""
-    robot, theta = _zheng(), drawn()
+    robot, theta = _zheng(), drawn(seed=seed)
     printed = _circumcentre(robot, theta, across=lambda a, b, c: np.cross(np.cross(a, b), c))
     return float(np.nanmedian(_apart(printed, robot.forward(theta))))
 
@@ -95,13 +97,30 @@ def half_angle_digits() -> float:
     return float(np.degrees(_turned(textbook - steady).max()))
 
 
-def lean_ignored(*, planar: bool) -> tuple[float, float]:
-    """(median, worst) degrees of the STM32 library's rule of cosines over its scan's points:
-    with its forearm's whole length, or else with its distance not planar."""
+def of_scan(within_deg: tuple[float, float] | None = None) -> np.ndarray:
+    """(m, 3) mm: the STM32 library's scan, or of it what joints within these limits reach."""
     from source_tables.stm32 import scan
 
+    xyz, theta = scan(_stm32())
+    if within_deg is None:
+        return xyz
+    low, high = np.radians(within_deg)
+    return xyz[((theta >= low) & (theta <= high)).all(axis=-1)]
+
+
+def of_angles(low_deg: float, high_deg: float) -> np.ndarray:
+    """(m, 3) mm: where angles drawn evenly lead the STM32 robot, all its elbows outside."""
     robot = _stm32()
-    xyz, theta = scan(robot)
+    theta = drawn(within_deg=(low_deg, high_deg))
+    xyz = robot.forward(theta)
+    return xyz[(robot.jq(xyz, theta) > 0).all(axis=-1)]
+
+
+def lean_ignored(xyz: np.ndarray, *, planar: bool) -> tuple[float, float]:
+    """(median, worst) degrees of the STM32 library's rule of cosines at these places: with its
+    forearm's whole length, or else with its distance not planar."""
+    robot = _stm32()
+    theta = robot.inverse(xyz)
     apart: list[np.ndarray] = []
     for i, leg in enumerate(legs_of(robot)):
         out, side, up = leg.seen(xyz)
@@ -114,11 +133,15 @@ def lean_ignored(*, planar: bool) -> tuple[float, float]:
     return float(np.degrees(np.median(apart))), float(np.degrees(np.max(apart)))
 
 
-def platform_ignored() -> float:
-    """Worst degrees, for the preset fivebar within -45° to 90°."""
-    robot = load_robot("fivebar").mechanism
+def platform_ignored(*, zone: bool = False) -> float:
+    """Worst degrees, for the preset fivebar within -45° to 90°, or all over its zone."""
+    fivebar = load_robot("fivebar")
+    robot, (x, z) = fivebar.mechanism, (fivebar.zone.x, fivebar.zone.z)
     assert isinstance(robot, FiveBar)
-    xz = robot.forward(drawn(2))
+    assert x is not None
+    sides = (np.linspace(*side, 201) for side in (x, z))
+    grid = np.stack(np.meshgrid(*sides), axis=-1).reshape(-1, 2)
+    xz = grid if zone else robot.forward(drawn(2))
     without = FiveBar(
         base_half=robot.base_half, platform_half=0, upper_arm=robot.upper_arm, forearm=robot.forearm
     )

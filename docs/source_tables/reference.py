@@ -56,11 +56,9 @@ def certificates() -> str:
         assert isinstance(robot, RotaryDelta)
         s = robot.base_radius[0] - robot.effector_radius[0]
         ours = (s + robot.upper_arm[0]) / robot.forearm[0]
-        rows.append(Row(f"{name}: (s + L)/l", ratio, ours, 5e-4))
+        rows.append(Row(f"{name}: (s + L)/l", ratio, ours, 3))
         formula = max(1.0, np.sqrt(2) / np.tan(np.arcsin(ours)))
-        rows.append(
-            Row(f"{name}: best conditioning on the axis", formula, _best_on_axis(robot), 5e-4)
-        )
+        rows.append(Row(f"{name}: best conditioning on the axis", formula, _best_on_axis(robot), 3))
     return table(rows)
 
 

@@ -31,16 +31,16 @@ def rows() -> Iterable[Row]:
     xyz, theta = scan(robot)
     inside = ((theta >= np.radians(-45)) & (theta <= np.radians(90))).all(axis=-1)
     radius = np.hypot(xyz[:, 0], xyz[:, 1])
-    yield Row("points of the grid within reach", 5928, len(xyz), 0.5)
-    yield Row("of them with joints from −45° to 90°", 3786, int(inside.sum()), 0.5)
+    yield Row("points of the grid within reach", 5928, len(xyz), 0)
+    yield Row("of them with joints from −45° to 90°", 3786, int(inside.sum()), 0)
     for z, theirs in HEIGHTS.items():
         ours = radius[xyz[:, 2] == z].max()
-        yield Row(f"largest radius of the grid at z = {z}", theirs, ours, 0.05, " mm")
-    yield Row("least angle in the scan", -150, np.degrees(theta.min()), 0.5, "°")
-    yield Row("greatest angle", 119, np.degrees(theta.max()), 0.5, "°")
+        yield Row(f"largest radius of the grid at z = {z}", theirs, ours, 1, " mm")
+    yield Row("least angle in the scan", -150, np.degrees(theta.min()), 0, "°")
+    yield Row("greatest angle", 119, np.degrees(theta.max()), 0, "°")
     low, high = _centre(robot)
-    yield Row("lowest place on the axis", -461.3, low, 0.05, " mm")
-    yield Row("highest place on the axis", -209.2, high, 0.05, " mm")
+    yield Row("lowest place on the axis", -461.3, low, 1, " mm")
+    yield Row("highest place on the axis", -209.2, high, 1, " mm")
 
 
 def reach() -> str:

@@ -21,13 +21,13 @@ def rows() -> list[Row]:
     robot = load_robot("trossen").mechanism
     missed, _, _ = mistakes.rounded_tan30()
     return [
-        Row("z of forward(0°, 0°, 0°)", -96.859015171, robot.forward([0, 0, 0])[2], 5e-10, " mm"),
+        Row("z of forward(0°, 0°, 0°)", -96.859015171, robot.forward([0, 0, 0])[2], 9, " mm"),
         Row(
             "of all angles in [−45°, 90°]³: an elbow inside",
-            2.2, 100 * mistakes.share_inside(), 0.05, " %",
+            2.2, 100 * mistakes.share_inside(), 1, " %",
         ),
         Row(
-            "what a rounded tan 30° misses, median", 5e-2, 1e3 * missed, 5e-3, " µm",
+            "what a rounded tan 30° misses, median", 5e-2, 1e3 * missed, 2, " µm",
             "depends on which poses are drawn: these are even in the angles",
         ),
     ]  # fmt: skip
@@ -58,8 +58,8 @@ def in_c() -> str:
 def firestep_rows() -> Iterable[Row]:
     robot = RotaryDelta.from_sides(f=190.526, e=131.636, upper_arm=90, forearm=270)
     zero, one = robot.forward(np.radians([[0, 0, 0], [1, 1, 1]]))[:, 2]
-    yield Row("z of forward(0°, 0°, 0°)", -247.893088, zero, 5e-7, " mm")
-    yield Row("forward(1°, 1°, 1°), below it", -1.57663, one - zero, 5e-6, " mm")
+    yield Row("z of forward(0°, 0°, 0°)", -247.893088, zero, 6, " mm")
+    yield Row("forward(1°, 1°, 1°), below it", -1.57663, one - zero, 5, " mm")
     cases = {
         (0, 0, 65): (-64.651190,) * 3,
         (0, 0, -10): (6.232677,) * 3,
@@ -69,7 +69,7 @@ def firestep_rows() -> Iterable[Row]:
         ours = np.degrees(robot.inverse(np.array(point) - [0, 0, FIRESTEP_ZERO]))
         for arm in range(3 if len(set(theirs)) > 1 else 1):
             which = f", θ{arm + 1}" if len(set(theirs)) > 1 else ", all three"
-            yield Row(f"inverse{point}{which}", theirs[arm], ours[arm], 5e-7, "°")
+            yield Row(f"inverse{point}{which}", theirs[arm], ours[arm], 6, "°")
 
 
 def tables() -> str:

@@ -55,10 +55,10 @@ def test_torques_of_a_uniform_rod(name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("rods", "off"), [(RodModel.TWO_THIRDS, 0.07), (RodModel.HALVES, 0.16)], ids=lambda v: str(v)
+    ("rods", "off"), [(RodModel.TWO_THIRDS, 0.052), (RodModel.HALVES, 0.120)], ids=lambda v: str(v)
 )
 def test_lumped_rods_are_off(rods: RodModel, off: float) -> None:
-    """Of the torques of a motion, by about what the sources say of theirs."""
+    """By which share of the torques of quick motions, at up to 80 rad/s²."""
     shares = []
     for name in NAMES:
         mechanism, masses, (theta, speed, change, tau) = reference(name)
@@ -66,7 +66,7 @@ def test_lumped_rods_are_off(rods: RodModel, off: float) -> None:
             mechanism, masses, forward_motion(mechanism, theta, speed, change), rods=rods
         )
         shares.append(np.linalg.norm(lumped - tau, axis=1) / np.linalg.norm(tau, axis=1))
-    assert np.sqrt(np.mean(np.square(shares))) == pytest.approx(off, rel=0.35)
+    assert np.sqrt(np.mean(np.square(shares))) == pytest.approx(off, rel=0.02)
 
 
 def test_a_payload_is_more_effector() -> None:

@@ -182,16 +182,23 @@ def _holding(robot: Robot, points: Array, payload: float) -> Array | None:
     return np.nanmax(tau, axis=0)
 
 
-def _crossing(robot: Robot, payload: float) -> Torques | None:
-    """Straight through the middle of the zone along x; None too where that cannot be reached."""
-    if robot.masses is None:
-        return None
+def zone_way(robot: Robot) -> tuple[Array, Array]:
+    """From where to where the motion for the torques goes: straight through the middle of the zone
+    along x; mm."""
     zone = robot.zone
     half = WAY * (zone.radius if zone.radius is not None else min(map(abs, zone.x or (0.0, 0.0))))
     end = np.zeros(len(robot.tool_offset))
     end[0], end[-1] = half, sum(zone.z) / 2
     start = end.copy()
     start[0] = -half
+    return start, end
+
+
+def _crossing(robot: Robot, payload: float) -> Torques | None:
+    """None too where the way through the zone cannot be reached."""
+    if robot.masses is None:
+        return None
+    start, end = zone_way(robot)
     try:
         return crossing(robot, start, end, payload=payload)
     except ValueError:
