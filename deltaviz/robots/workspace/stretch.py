@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 from deltaviz.mechanism.arrays import Array
 from deltaviz.robots.workspace.cells import Box
 from deltaviz.robots.workspace.clearances import clearances
-from deltaviz.robots.workspace.inscribed import Wanted, largest
+from deltaviz.robots.workspace.inscribed import largest
 from deltaviz.robots.workspace.margins import Margins
 from deltaviz.robots.workspace.search import Seek, search
 from deltaviz.robots.workspace.shapes import Belt
+from deltaviz.robots.workspace.sketch import Wanted
 from deltaviz.robots.workspace.stems import FAR, Stem, Within
 
 PLACES = 400
