@@ -211,7 +211,44 @@ def test_a_belt_that_is_too_wide(stm32: Robot, space: Workspace) -> None:
     assert not found.fits
     assert (found.length, found.start) == (0.0, None)
     assert served(stm32, Belt(found.widest - 0.5, 40.0, -340.0)) is not None
-    assert served(stm32, Belt(found.widest + 1.0, 40.0, -340.0)) is None
+    assert found.none_wider < found.widest + 1.0
+    assert served(stm32, Belt(found.none_wider, 40.0, -340.0)) is None
+    assert found.widest_at is not None
+    low, high = (served_about(stm32, belt, found.widest_at, side) for side in (-1.0, 1.0))
+    assert all(
+        limit is not None and limit.kind in kinds
+        for limit, kinds in zip(found.limits, (low, high), strict=True)
+    )
+
+
+def served_about(robot: Robot, belt: Belt, place: float, side: float) -> set[MarginKind]:
+    """What keeps the tool tip from going to one side of a belt of any width."""
+    z = belt.floor + np.linspace(0, belt.height, 9)
+    y = side * np.linspace(0, 400, 1601)
+    grid = np.array([[(place, aside, up) for up in z] for aside in y])
+    free = oracle.reached(robot, grid.reshape(-1, 3)).reshape(len(y), -1)
+    first = int(np.flatnonzero(~free.all(axis=1))[0])
+    outside = grid[first + 2][~free[first + 2]]
+    return {why.limit.kind for point in outside for why in robot.reach(point).reasons}
+
+
+def test_a_belt_near_the_widest_gets_no_contradictory_answer(space: Workspace) -> None:
+    """What is told to be served at a width, is."""
+    widest = space.serve(Belt(800.0, 0.0, -230.0)).widest
+    found = space.serve(Belt(widest - 0.01, 0.0, -230.0))
+    assert found.fits
+    assert found.widest >= widest - 0.01
+
+
+def test_what_ends_the_stretch_of_a_belt(stm32: Robot, space: Workspace) -> None:
+    found = space.serve(Belt(200.0, 40.0, -340.0))
+    assert found.start is not None
+    assert found.end is not None
+    for limit, place in zip(found.limits, (found.start - 1.0, found.end + 1.0), strict=True):
+        assert limit is not None
+        grid = [(place, y, z) for y in np.linspace(-100, 100, 81) for z in (-340, -320, -300)]
+        broken = {why.limit.kind for point in grid for why in stm32.reach(point).reasons}
+        assert limit.kind in broken
 
 
 def test_a_flat_cylinder_between_parts_that_nearly_touch() -> None:
