@@ -235,7 +235,9 @@ def _check_ready(robot: made.Robot, file: schema.RobotFile) -> None:
         return
     if not _workspace_reachable(robot):
         raise Inconsistent(
-            "workspace", "as given", "must hold at least one point that the robot can reach"
+            "workspace",
+            _told(file.workspace),
+            "must hold at least one point that the robot can reach",
         )
     broken = zip(robot.margin_names, margins.tolist(), strict=True)
     limits = ", ".join(str(name) for name, margin in broken if margin < 0)
@@ -244,6 +246,14 @@ def _check_ready(robot: made.Robot, file: schema.RobotFile) -> None:
         "homing.ready_deg",
         given,
         f"must lie within all limits; there the tool tip is at ({where}) mm, beyond: {limits}",
+    )
+
+
+def _told(zone: schema.DeltaWorkspace | schema.FiveBarWorkspace) -> str:
+    """As the file has it."""
+    values = zone.model_dump(exclude_none=True).items()
+    return ", ".join(
+        f"{name} {list(value) if isinstance(value, tuple) else value}" for name, value in values
     )
 
 

@@ -12,6 +12,8 @@ from typing import Annotated, Any, Literal, TypeAlias
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationInfo
 
+LONGEST = 100_000.0  # mm
+
 
 class Rule(ValueError):
     """What would be legal."""
@@ -37,10 +39,10 @@ def _between(low: float, high: float, rule: str) -> Any:
     return check
 
 
-def _at_least_zero(value: object) -> float:
+def _half(value: object) -> float:
     number = _finite(value)
-    if number < 0:
-        raise Rule("must be at least 0")
+    if not 0 <= number <= LONGEST:
+        raise Rule("must be at least 0" if number < 0 else f"must be at most {LONGEST:g} mm")
     return number
 
 
@@ -101,10 +103,21 @@ def _text(value: object) -> str:
 
 
 def _range(value: object) -> tuple[float, float]:
+    """Of coordinates, mm."""
     low, high = _list_of(_finite, 2, "must be [low, high]")(value)
     if not low < high:
         raise Rule("must be [low, high] with low < high")
+    if max(-low, high) > LONGEST:
+        raise Rule(f"must lie between -{LONGEST:g} and {LONGEST:g} mm")
     return low, high
+
+
+def _length(value: object) -> float:
+    """mm; far beyond it, differences of squares are lost to rounding."""
+    number = _above_zero(value)
+    if number > LONGEST:
+        raise Rule(f"must be at most {LONGEST:g} mm")
+    return number
 
 
 _above_zero = _between(0.0, math.inf, "must be greater than 0")
@@ -112,7 +125,9 @@ _angle = _between(-180.0, 180.0, "must be between -180 and 180")
 
 Positive = Annotated[float, BeforeValidator(_above_zero)]
 PerArm = Annotated[tuple[float, ...], BeforeValidator(_each(_above_zero))]
-Halves = Annotated[tuple[float, ...], BeforeValidator(_each(_at_least_zero))]
+Length = Annotated[float, BeforeValidator(_length)]
+Lengths = Annotated[tuple[float, ...], BeforeValidator(_each(_length))]
+Halves = Annotated[tuple[float, ...], BeforeValidator(_each(_half))]
 Angles = Annotated[tuple[float, ...], BeforeValidator(_each(_angle))]
 Flag = Annotated[bool, BeforeValidator(_flag)]
 Flags = Annotated[tuple[bool, ...], BeforeValidator(_each(_flag))]
@@ -139,12 +154,12 @@ class Section(BaseModel):
 class DeltaGeometry(Section):
     """Radii, or the sides of the base's and the effector's triangle (Trossen's f and e)."""
 
-    base_radius: PerArm | None = None
-    effector_radius: PerArm | None = None
-    base_side: Positive | None = None
-    effector_side: Positive | None = None
-    upper_arm: PerArm
-    forearm: PerArm
+    base_radius: Lengths | None = None
+    effector_radius: Lengths | None = None
+    base_side: Length | None = None
+    effector_side: Length | None = None
+    upper_arm: Lengths
+    forearm: Lengths
     azimuths_deg: Azimuths | None = None  # 0, 120, 240; with sides -90, 30, 150
     tool_offset: Offset = (0.0, 0.0, 0.0)
 
@@ -152,8 +167,8 @@ class DeltaGeometry(Section):
 class FiveBarGeometry(Section):
     base_half: Halves
     platform_half: Halves
-    upper_arm: PerArm
-    forearm: PerArm
+    upper_arm: Lengths
+    forearm: Lengths
     tool_offset: PlanarOffset = (0.0, 0.0)
 
 
@@ -168,7 +183,7 @@ class DeltaJoints(Joints):
 
 class DeltaWorkspace(Section):
     z: Range
-    radius: Positive | None = None
+    radius: Length | None = None
     x: Range | None = None
     y: Range | None = None
 
@@ -258,11 +273,11 @@ class ToolAxis(Section):
 class Bodies(Section):
     """How thick the parts are, for the collisions of the workspace's analysis."""
 
-    base_thickness: Positive
-    upper_arm_diameter: Positive
-    rod_diameter: Positive
-    rod_spacing: Positive
-    effector_thickness: Positive
+    base_thickness: Length
+    upper_arm_diameter: Length
+    rod_diameter: Length
+    rod_spacing: Length
+    effector_thickness: Length
 
 
 class Masses(Section):

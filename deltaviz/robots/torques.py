@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,6 +25,7 @@ SAMPLES = 1000  # of a motion
 # acceleration over d/T². s = 10 t³ - 15 t⁴ + 6 t⁵.
 PEAK_SPEED = 15 / 8
 PEAK_ACCELERATION = 10 / np.sqrt(3)
+OUT_OF_REACH = "the way leaves what the arms reach"
 
 
 class MassesMissing(ValueError):
@@ -33,11 +35,12 @@ class MassesMissing(ValueError):
 @dataclass(frozen=True)
 class Torques:
     """N m at the arms' shafts, (n,) each, of a motion that takes `duration` s. A motor must give
-    `peak` for a moment, and `rms` all day."""
+    `peak` for a moment, and `rms` all day; `fastest` are the joints' largest speeds, rad/s."""
 
     duration: float
     peak: Array
     rms: Array
+    fastest: Array
 
 
 def holding(robot: Robot, points: ArrayLike, *, payload: float = 0.0) -> Array:
@@ -58,14 +61,20 @@ def crossing(
     rods: RodModel = RodModel.UNIFORM,
 ) -> Torques:
     """Of a straight minimum-jerk motion from rest to rest; without `duration` as quick as the
-    robot's Cartesian speed and acceleration allow. Raises MassesMissing, and ValueError if the
-    way leaves the arms' reach."""
+    robot's limits of speed and acceleration allow, the tool tip's and the joints'. Raises
+    MassesMissing, and ValueError if the way leaves the arms' reach or the robot's limits."""
     mechanism, masses = _known(robot)
     path, duration = straight(robot, start, end, duration=duration)
+    _check_way(robot, path)
     tau = torques(mechanism, masses, path, payload=payload, rods=rods)
     if not np.isfinite(tau).all():
-        raise ValueError("the way leaves what the arms reach")
-    return Torques(duration, np.abs(tau).max(axis=0), np.sqrt((tau**2).mean(axis=0)))
+        raise ValueError(OUT_OF_REACH)
+    return Torques(
+        duration,
+        peak=np.abs(tau).max(axis=0),
+        rms=np.sqrt((tau**2).mean(axis=0)),
+        fastest=np.abs(path.theta_dot).max(axis=0),
+    )
 
 
 def straight(
@@ -75,16 +84,49 @@ def straight(
     mechanism, _ = _known(robot)
     first, last = (rows(p, len(robot.tool_offset), "point") for p in (start, end))
     way = last - first
-    if duration is None:
-        limits, length = robot.limits.cartesian, float(np.linalg.norm(way))
-        by_speed = PEAK_SPEED * length / limits.velocity
-        duration = max(by_speed, float(np.sqrt(PEAK_ACCELERATION * length / limits.acceleration)))
     t = np.linspace(0.0, 1.0, SAMPLES)[:, None]
     place = t**3 * (10 - 15 * t + 6 * t**2)
-    speed = 30 * t**2 * (1 - t) ** 2 / duration
-    change = 60 * t * (1 - t) * (1 - 2 * t) / duration**2
+    speed = 30 * t**2 * (1 - t) ** 2
+    change = 60 * t * (1 - t) * (1 - 2 * t)
     centre = first - np.asarray(robot.tool_offset) + way * place
-    return inverse_motion(mechanism, centre, way * speed, way * change), duration
+
+    def lasting(seconds: float) -> Motion:
+        return inverse_motion(mechanism, centre, way * speed / seconds, way * change / seconds**2)
+
+    if duration is None:
+        duration = _shortest(robot, float(np.linalg.norm(way)), lasting)
+    return lasting(duration), duration
+
+
+def _shortest(robot: Robot, length: float, lasting: Callable[[float], Motion]) -> float:
+    """s; the joints' speeds fall with the duration, their accelerations with its square."""
+    tip, joint, n = robot.limits.cartesian, robot.limits.joint, robot.mechanism.joints
+    by_tip = max(
+        PEAK_SPEED * length / tip.velocity,
+        float(np.sqrt(PEAK_ACCELERATION * length / tip.acceleration)),
+    )
+    if by_tip == 0:
+        return by_tip
+    motion = lasting(by_tip)
+    speed = np.abs(motion.theta_dot) / np.asarray(joint.velocity[:n])
+    change = np.abs(motion.theta_ddot) / np.asarray(joint.acceleration[:n])
+    over = np.fmax.reduce([*speed.ravel(), *np.sqrt(change).ravel(), 1.0])
+    return by_tip * float(over)
+
+
+def _check_way(robot: Robot, path: Motion) -> None:
+    """Raises ValueError, with the limit that is exceeded most and where."""
+    tip = path.position + np.asarray(robot.tool_offset)
+    angles = robot.inverse(tip)
+    if not np.isfinite(angles).all():
+        raise ValueError(OUT_OF_REACH)
+    margins = robot.margins(tip, angles)
+    if (margins >= 0).all():
+        return
+    worst = int(margins.min(axis=1).argmin())
+    place = ", ".join(f"{v:.1f}" for v in tip[worst].tolist())
+    name = robot.margin_names[int(margins[worst].argmin())]
+    raise ValueError(f"the way leaves the limits, most at ({place}) mm: {name}")
 
 
 def _known(robot: Robot) -> tuple[RotaryDelta | FiveBar, Masses]:

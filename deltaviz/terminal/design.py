@@ -36,6 +36,10 @@ def run(template: Robot, template_text: str, options: argparse.Namespace) -> int
     if out.exists() and not options.overwrite:
         print(f"deltaviz: {out} is there already; --overwrite writes over it", file=sys.stderr)
         return FAILED
+    unwritable = _unwritable(out)  # asked before the search, which takes minutes
+    if unwritable is not None:
+        print(f"deltaviz: --out {out}: {unwritable}", file=sys.stderr)
+        return FAILED
     designed = _designed(template, template_text, wished, sizes, out, options)
     if designed is None:
         return FAILED
@@ -46,6 +50,18 @@ def run(template: Robot, template_text: str, options: argparse.Namespace) -> int
         return FAILED
     print(as_json(designed, out) if options.json else text(designed, out))
     return OK
+
+
+def _unwritable(out: Path) -> str | None:
+    """Why a file cannot be written; it is left as it was."""
+    was_there = out.exists()
+    try:
+        out.open("a").close()
+        if not was_there:
+            out.unlink()
+    except OSError as error:
+        return error.strerror or str(error)
+    return None
 
 
 def _designed(

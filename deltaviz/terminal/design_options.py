@@ -139,6 +139,7 @@ def ranges(template: Robot, wished: Wish, options: argparse.Namespace) -> Ranges
 
     mechanism, span, grain = template.mechanism, wished.span, options.grain
     least = max(mechanism.effector_radius) if isinstance(mechanism, RotaryDelta) else 0.0
+    _check_most(options, template.name, least_base=least)
     most_upper = options.max_upper_arm or MOST_UPPER_ARM * span
     most_fore = options.max_forearm or MOST_FOREARM * span
     depth = options.max_depth or most_upper + most_fore
@@ -157,9 +158,27 @@ def ranges(template: Robot, wished: Wish, options: argparse.Namespace) -> Ranges
     )
 
 
+def _check_most(options: argparse.Namespace, name: str, *, least_base: float) -> None:
+    """Raises WrongWish for a size limit below what any design has."""
+    grain = options.grain
+    base = _whole_grains(least_base, math.inf, grain)[0]
+    if options.max_base is not None and options.max_base < base:
+        raise WrongWish(
+            f"--max-base {options.max_base:g}: must be at least {base:g}: the effector is that of "
+            f"{name}, {least_base:g} mm in radius, and no base is smaller than its effector"
+        )
+    for option in ("max_upper_arm", "max_forearm"):
+        most = getattr(options, option)
+        if most is not None and most < grain:
+            raise WrongWish(
+                f"--{option.replace('_', '-')} {most:g}: must be at least {grain:g}, one --grain"
+            )
+
+
 def _whole_grains(low: float, high: float, grain: float) -> tuple[float, float]:
     """The multiples of `grain` between them, so that a rounded length stays within its limits."""
-    return math.ceil(low / grain) * grain, math.floor(high / grain) * grain
+    most = high if math.isinf(high) else math.floor(high / grain) * grain
+    return math.ceil(low / grain) * grain, most
 
 
 def _whole(text: str) -> int:

@@ -7,14 +7,15 @@ import json
 import math
 import os
 import sys
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from deltaviz.terminal.numbers import finite, not_negative, positive
 from deltaviz.terminal.status import BAD_USAGE, FAILED, OK
+from deltaviz.terminal.workspace_answers import Answer, answers
 
 if TYPE_CHECKING:  # the command line starts before the layers it needs are known
     from deltaviz.robots import Robot
-    from deltaviz.robots.workspace import Belt, Inscribed, Limit, Workspace
+    from deltaviz.robots.workspace import Inscribed, Limit, Workspace
     from deltaviz.robots.workspace.report import Report
 
 LIMITS = ("reach", "joints", "ball-joints", "singularities", "collisions", "zone")
@@ -53,6 +54,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--along", choices=("x", "y"), default="x", help="direction of the belt (x)"
     )
     parser.add_argument(
+        "--offset",
+        type=finite,
+        metavar="MM",
+        help="where the belt's middle runs beside the axis (0)",
+    )
+    parser.add_argument(
+        "--stretch", type=positive, metavar="MM", help="how much of the belt must be reached (any)"
+    )
+    parser.add_argument(
         "--payload", type=not_negative, default=0.0, metavar="KG", help="for the torques (0)"
     )
     parser.add_argument("--plot", metavar="FILE", help="write pictures (.png, .svg, .pdf)")
@@ -78,13 +88,13 @@ def run(robot: Robot, options: argparse.Namespace) -> int:
             print(json.dumps({"robot": robot.name, "empty": True, "reason": workspace.reason}))
         print(f"deltaviz: the workspace is empty. {workspace.reason}", file=sys.stderr)
         return FAILED
-    answers = _answers(workspace, options)
-    if answers:
-        _print_answers(workspace, answers, as_json=options.json)
+    asked = answers(workspace, options)
+    if asked:
+        _print_answers(workspace, asked, as_json=options.json)
     else:
         _print_found(workspace, options)
     written = _write(workspace, options)
-    return OK if written and all(answer.fits for answer in answers) else FAILED
+    return OK if written and all(answer.fits for answer in asked) else FAILED
 
 
 def _wrong(options: argparse.Namespace, *, planar: bool) -> str | None:
@@ -98,6 +108,10 @@ def _wrong(options: argparse.Namespace, *, planar: bool) -> str | None:
         return f"--belt takes its width, or width and height; got {len(options.belt)} lengths"
     if options.belt and options.at is None:
         return "--belt needs --at Z, the height at which it runs"
+    if not options.belt and (options.offset is not None or options.stretch is not None):
+        return f"{'--stretch' if options.offset is None else '--offset'} needs --belt"
+    if planar and options.offset:
+        return "--offset: this robot moves in the plane of x and z"
     if planar and options.belt and options.along == "y":
         return "--along y: this robot moves in the plane of x and z"
     if planar and options.stl:
@@ -116,131 +130,24 @@ def _unknown_colour(colour: str | None) -> str | None:
     return None if colour in known else f"--colour {colour}: use one of {', '.join(known)}"
 
 
-class _Answer:
-    """To one question whether something fits."""
-
-    def __init__(self, key: str, fits: bool, text: str, data: dict[str, Any]) -> None:
-        self.key, self.fits, self.text, self.data = key, fits, text, data
-
-
-def _answers(workspace: Workspace, options: argparse.Namespace) -> list[_Answer]:
-    out: list[_Answer] = []
-    centre = None if options.anywhere else (0.0, 0.0)
-    if options.cylinder:
-        diameter, height = options.cylinder
-        best = workspace.largest_cylinder(height=height, floor=options.at, centre=centre)
-        out.append(_whether(workspace, "cylinder", (diameter,), height, best, options))
-    if options.box:
-        *sides, height = options.box
-        aspect = sides[-1] / sides[0]
-        best = workspace.largest_box(height=height, floor=options.at, centre=centre, aspect=aspect)
-        out.append(_whether(workspace, "box", tuple(sides), height, best, options))
-    if options.belt:
-        out.append(_belt(workspace, options))
-    return out
-
-
-def _whether(
-    workspace: Workspace,
-    key: str,
-    sides: tuple[float, ...],
-    height: float,
-    best: Inscribed | None,
-    options: argparse.Namespace,
-) -> _Answer:
-    """`best` is the largest of the same height and form."""
-    from deltaviz.robots.workspace import Cuboid, Cylinder
-    from deltaviz.robots.workspace.report import shape_json
-
-    flat = workspace.margins.dimensions - 1
-    centre = (0.0,) * flat if best is None else best.shape.centre
-    floor = _floor(workspace, height, best, options)
-    shape = Cylinder(sides[0], height, floor, centre) if key == "cylinder" else Cuboid(
-        sides, height, floor, centre
-    )  # fmt: skip
-    widest = 0.0 if best is None else _width(best)
-    fits = widest >= sides[0]
-    data: dict[str, Any] = {"fits": fits, **shape_json(shape), "largest_width_mm": widest}
-    if fits:
-        return _Answer(key, True, f"Fits: {shape}.", data)
-    found = workspace.fit(shape)
-    side = "diameter" if key == "cylinder" else "first side"
-    lines = [
-        f"Does not fit: {shape}.",
-        f"  It would have to shrink by {-found.clearance:.1f} mm on all sides; "
-        f"{100 * found.unreached:.1f} % of it is out of reach.",
-    ]
-    if found.where is not None and found.limit is not None:
-        place = ", ".join(f"{v:.1f}" for v in found.where.tolist())
-        lines.append(f"  Worst at ({place}) mm: {_sentence(found.limit)}.")
-    most = 0.0 if best is None else best.most
-    lines.append(
-        f"  Of this height the {side} may be {widest:.1f} mm"
-        + (f" (none above {most:.1f} fits)." if best is not None else ".")
-    )
-    data |= {"clearance_mm": found.clearance, "unreached": found.unreached}
-    data["where_mm"] = None if found.where is None else found.where.tolist()
-    data["limit"] = None if found.limit is None else str(found.limit)
-    return _Answer(key, False, "\n".join(lines), data)
-
-
-def _floor(
-    workspace: Workspace, height: float, best: Inscribed | None, options: argparse.Namespace
-) -> float:
-    if options.at is not None:
-        return options.at
-    if best is not None:
-        return best.shape.floor
-    low, high = float(workspace.extents.low[-1]), float(workspace.extents.high[-1])
-    return (low + high - height) / 2
-
-
-def _width(best: Inscribed) -> float:
-    from deltaviz.robots.workspace import Cylinder
-
-    return best.shape.diameter if isinstance(best.shape, Cylinder) else best.shape.size[0]
-
-
-def _belt(workspace: Workspace, options: argparse.Namespace) -> _Answer:
-    from deltaviz.robots.workspace import Belt
-
-    width, height = [*options.belt, 0.0][:2]
-    belt = Belt(width, height, options.at, axis="xy".index(options.along))
-    found = workspace.serve(belt)
-    data: dict[str, Any] = {
-        "fits": found.fits,
-        "from_mm": found.start,
-        "to_mm": found.end,
-        "stretch_mm": found.length,
-        "widest_mm": found.widest if math.isfinite(found.widest) else None,
-    }
-    if found.fits:
-        text = (
-            f"Served: {belt}, over its whole width from {options.along} {found.start:.1f} to "
-            f"{found.end:.1f} mm, a stretch of {found.length:.1f} mm."
-        )
-        return _Answer("belt", True, text, data)
-    return _Answer("belt", False, _too_wide(workspace, belt, found.widest), data)
-
-
-def _too_wide(workspace: Workspace, belt: Belt, widest: float) -> str:
-    text = f"Not served over its whole width: {belt}."
-    if not math.isfinite(widest) or widest <= 0:
-        return f"{text}\n  At that height nothing in its middle is within reach."
-    return f"{text}\n  At most {widest:.1f} mm are: it is {belt.width - widest:.1f} mm too wide."
-
-
-def _print_answers(workspace: Workspace, answers: list[_Answer], *, as_json: bool) -> None:
+def _print_answers(workspace: Workspace, asked: list[Answer], *, as_json: bool) -> None:
     """Questions are answered alone: the rest takes longer."""
-    from deltaviz.robots.workspace.report import limit_names
+    from deltaviz.robots.workspace.report import limits_json
 
     if as_json:
-        head = {"robot": workspace.robot.name, "limits": limit_names(workspace.limits)}
-        data = head | {"empty": False} | {answer.key: answer.data for answer in answers}
-        print(json.dumps(data, allow_nan=False))
+        head = {"robot": workspace.robot.name, **limits_json(workspace), "empty": False}
+        print(json.dumps(head | {answer.key: answer.data for answer in asked}, allow_nan=False))
         return
-    for answer in answers:
+    for answer in asked:
         print(answer.text)
+    _print_not_considered(workspace)
+
+
+def _print_not_considered(workspace: Workspace) -> None:
+    from deltaviz.robots.workspace.report import limit_name
+
+    for limit, why in workspace.not_considered.items():
+        print(f"Not considered: {limit_name(limit)}; {why}.")
 
 
 def _print_found(workspace: Workspace, options: argparse.Namespace) -> None:
@@ -258,7 +165,10 @@ def _print_report(found: Report) -> None:
 
     workspace = found.workspace
     planar = workspace.margins.dimensions == 2
-    print(f"{workspace.robot.name}: tool tip, limits {', '.join(limit_names(workspace.limits))}")
+    print(
+        f"{workspace.robot.name}: tool tip, limits {', '.join(limit_names(workspace.considered))}"
+    )
+    _print_not_considered(workspace)
     size = f"{workspace.volume / 100:.1f} cm²" if planar else f"{workspace.volume / 1e6:.3f} l"
     sides = zip(
         workspace.robot.axes, found.extents.low.tolist(), found.extents.high.tolist(), strict=True
@@ -312,22 +222,20 @@ def _print_torques(found: Report) -> None:
     print(
         f"\nHolding {found.payload:g} kg anywhere takes up to {found.holding.max():.3g} N m a joint"
     )
-    if found.crossing is not None:
-        moved = found.crossing
-        print(
-            f"Crossing its zone in {moved.duration:.2f} s, as its limits allow: peak "
-            f"{moved.peak.max():.3g}, rms {moved.rms.max():.3g} N m"
-        )
-
-
-def _sentence(limit: Any) -> str:
-    text = str(limit)
-    return text[0].upper() + text[1:]
+    if found.crossing is None:
+        print(f"Not crossing its zone: {found.not_crossed}")
+        return
+    moved, fastest = found.crossing, math.degrees(found.crossing.fastest.max())
+    print(
+        f"Crossing its zone in {moved.duration:.2f} s, as its limits allow: peak "
+        f"{moved.peak.max():.3g}, rms {moved.rms.max():.3g} N m, {fastest:.3g} °/s"
+    )
 
 
 def _write(workspace: Workspace, options: argparse.Namespace) -> bool:
     """The files asked for; False, with the reason on stderr, if one could not be written."""
     from deltaviz.robots.workspace.export import write_csv, write_stl
+    from deltaviz.robots.workspace.field import TooFine
     from deltaviz.robots.workspace.plot import PlotsMissing
 
     try:
@@ -337,6 +245,9 @@ def _write(workspace: Workspace, options: argparse.Namespace) -> bool:
             write_stl(workspace, options.stl)
         if options.plot:
             workspace.plot(options.plot, colour=options.colour)
+    except TooFine as error:
+        print(f"deltaviz: --resolution: {error}", file=sys.stderr)
+        return False
     except (OSError, PlotsMissing, ValueError) as error:
         print(f"deltaviz: {error}", file=sys.stderr)
         return False

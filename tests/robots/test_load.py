@@ -20,6 +20,7 @@ def line_with(text: str, start: str) -> int:
 CHANGES = [
     ("forearm = 338.0", "forearm = -338.0", "geometry.forearm", "greater than 0"),
     ("forearm = 338.0", "forearm = 0", "geometry.forearm", "greater than 0"),
+    ("forearm = 338.0", "forearm = 1e308", "geometry.forearm", "at most 100000 mm"),
     ("forearm = 338.0", "forearm = nan", "geometry.forearm", "finite"),
     ("forearm = 338.0", "forearm = inf", "geometry.forearm", "finite"),
     ("forearm = 338.0", 'forearm = "long"', "geometry.forearm", "'long'.*a number"),
@@ -48,7 +49,14 @@ CHANGES = [
     ),
     ("z = [-440, -225]", "z = [-225, -440]", "workspace.z", "low < high"),
     ("z = [-440, -225]", "z = -440", "workspace.z", r"\[low, high\]"),
-    ("z = [-440, -225]", "z = [100, 200]", "workspace", "at least one point"),
+    (
+        "z = [-440, -225]",
+        "z = [100, 200]",
+        "workspace",
+        r"z \[100.0, 200.0\], radius 230.0: must hold at least one point",
+    ),
+    ("z = [-440, -225]", "z = [-1e9, -225]", "workspace.z", "between -100000 and 100000 mm"),
+    ("radius = 230", "radius = 1e6", "workspace.radius", "at most 100000 mm"),
     ("radius = 230", "x = [-1, 1]", "workspace", r"radius \(a cylinder\), or x and y"),
     ("velocity_deg_s = 340", "velocity_deg_s = 0", "limits.joint.velocity_deg_s", "greater than 0"),
     (

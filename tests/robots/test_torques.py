@@ -31,7 +31,13 @@ def test_a_motion_is_as_quick_as_the_limits_allow(stm32: Robot) -> None:
     speed = np.linalg.norm(motion.velocity, axis=1)
     change = np.linalg.norm(motion.acceleration, axis=1)
     limits = stm32.limits.cartesian
-    used = max(speed.max() / limits.velocity, change.max() / limits.acceleration)
+    joint = stm32.limits.joint
+    used = max(
+        speed.max() / limits.velocity,
+        change.max() / limits.acceleration,
+        np.abs(motion.theta_dot / joint.velocity).max(),
+        np.abs(motion.theta_ddot / joint.acceleration).max(),
+    )
     assert used == pytest.approx(1, abs=1e-3)
     t = np.linspace(0, duration, len(speed))
     np.testing.assert_allclose(
@@ -39,6 +45,27 @@ def test_a_motion_is_as_quick_as_the_limits_allow(stm32: Robot) -> None:
     )
     assert motion.position[0] == pytest.approx([-100, 0, -300])
     assert motion.position[-1] == pytest.approx([100, 0, -300])
+
+
+@pytest.mark.parametrize("field", ["velocity", "acceleration"])
+def test_the_joints_limits_slow_a_motion(stm32: Robot, field: str) -> None:
+    ends = [-100, 0, -300], [100, 0, -300]
+    motion, quick = straight(stm32, *ends)
+    values = motion.theta_dot if field == "velocity" else motion.theta_ddot
+    half = tuple((np.abs(values).max(axis=0) / 2).tolist())
+    joint = replace(stm32.limits.joint, **{field: half})
+    slowed = replace(stm32, limits=replace(stm32.limits, joint=joint))
+    _, slow = straight(slowed, *ends)
+    assert slow / quick == pytest.approx(2 if field == "velocity" else np.sqrt(2), rel=1e-6)
+    found = crossing(slowed, *ends)
+    assert found.duration == slow
+    assert (found.fastest <= np.array(slowed.limits.joint.velocity) * (1 + 1e-9)).all()
+
+
+def test_a_way_beyond_the_limits_is_refused_with_the_limit(stm32: Robot) -> None:
+    low = stm32.zone.z[0] - 2.0
+    with pytest.raises(ValueError, match=r"leaves the limits, most at \(.*, -442.0\) mm: "):
+        crossing(stm32, [-40, 0, low], [40, 0, low])
 
 
 @pytest.mark.parametrize("name", ["stm32", "fivebar"])

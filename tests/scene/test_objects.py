@@ -78,7 +78,7 @@ def test_where_no_height_is_chosen_it_lies_where_it_fits(robot: Robot) -> None:
 def test_a_belt_is_served_between_two_places_over_its_whole_width() -> None:
     robot, level = dataclasses.replace(load_robot("zheng2023"), bodies=None), -700.0
     (served,) = Serve(robot, Thing(Kind.BELT_Y, 0, 0), level).pictures()
-    words = served.text.split("Y ")[-1].removesuffix(" mm.").split(" to ")
+    words = served.text.split("Y ")[-1].split(" mm;")[0].split(" to ")
     start, end = map(float, words)
     across = np.linspace(-400, 400, 801)
 

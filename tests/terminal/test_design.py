@@ -62,6 +62,16 @@ def test_a_file_that_is_there_is_kept(capsys, tmp_path: Path) -> None:
     assert load_robot(out).name == "mine"
 
 
+def test_a_file_that_cannot_be_written_is_told_before_the_search(
+    monkeypatch, capsys, tmp_path: Path
+) -> None:
+    monkeypatch.setattr("deltaviz.robots.design.design", lambda *_, **__: pytest.fail("searched"))
+    out = tmp_path / "nowhere" / "x.toml"
+    status, told, err = run(capsys, *QUICK, "--out", str(out))
+    assert (status, told) == (1, "")
+    assert err == f"deltaviz: --out {out}: No such file or directory\n"
+
+
 def test_out_of_reach_writes_nothing(capsys, tmp_path: Path) -> None:
     out = tmp_path / "never.toml"
     status, told, err = run(capsys, *QUICK, "--max-forearm", "50", "--out", str(out))
@@ -90,8 +100,9 @@ def test_what_is_not_proved_is_not_written(monkeypatch, capsys, tmp_path: Path) 
         (["--paper", "napkin"], 2, "letter"),
         (["--box", "3", "4"], 2, "--box takes 3 lengths for stm32"),
         (["--robot", "fivebar", "--cylinder", "3", "4"], 2, "ask for --box W H"),
-        (["--cylinder", "300", "80", "--max-upper-arm", "0.2"], 2, "there is nothing"),
-        (["--cylinder", "300", "80", "--max-base", "50"], 2, "base: from 75 to 50 mm"),
+        (["--cylinder", "300", "80", "--max-upper-arm", "0.2"], 2, "at least 0.5, one --grain"),
+        (["--cylinder", "300", "80", "--max-base", "50"], 2, "--max-base 50: must be at least 75"),
+        (["--cylinder", "300", "80", "--max-base", "50"], 2, "that of stm32, 75 mm in radius"),
         (["--cylinder", "300", "80", "--at", "-900", "--max-depth", "500"], 2, "lies deeper"),
         (["--cylinder", "300", "80", "--seed", "-1"], 2, "whole number from 0"),
         (["--cylinder", "300", "80", "--generations", "0"], 2, "from 1 to 100000"),

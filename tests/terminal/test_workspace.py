@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 import subprocess
 import sys
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +20,7 @@ from deltaviz.robots import load_robot
 from deltaviz.robots.presets import preset_text
 from deltaviz.robots.workspace import Workspace
 from deltaviz.robots.workspace.export import write_csv, write_stl
+from deltaviz.robots.workspace.field import MOST_NODES, Grid
 from tests.test_cli import run
 
 COARSE = ("--resolution", "5")
@@ -121,8 +124,125 @@ def test_what_does_not_fit_says_by_how_much_and_where(capsys: pytest.CaptureFixt
 
 
 @pytest.mark.parametrize(
+    ("sides", "at"),
+    [(("--cylinder", "405.83", "100"), "-360"), (("--box", "288", "288", "100"), "-360")],
+)
+@pytest.mark.parametrize("more", [-0.2, -0.05, 0.0, 0.05, 0.3, 1.0])
+def test_near_the_limit_no_sentence_gainsays_another(
+    capsys: pytest.CaptureFixture[str], sides: tuple[str, ...], at: str, more: float
+) -> None:
+    shape, *widths, height = sides
+    wider = [f"{float(width) + more:.3f}" for width in widths]
+    asked = ("workspace", *COARSE, shape, *wider, height, "--at", at)
+    answer = json.loads(run(capsys, *asked, "--json")[1])[shape.removeprefix("--")]
+    out = run(capsys, *asked)[1]
+    assert "by -" not in out
+    assert "by 0.0" not in out
+    if answer["fits"]:
+        assert out.startswith("Fits: ")
+        return
+    told = re.search(r"may be ([0-9.]+) mm \(none above ([0-9.]+) fits\)", out)
+    assert told is not None
+    found, most = map(float, told.groups())
+    assert found <= answer["largest_width_mm"] <= answer["none_above_mm"] <= most
+    assert found < float(wider[0])
+    assert f"; {float(wider[0]):g} mm was asked for" in out
+    proved = float(wider[0]) > answer["none_above_mm"]
+    assert answer["fits"] is (False if proved else None)
+    assert out.startswith(
+        "Does not fit: " if proved else "Not found to fit, and not proved not to: "
+    )
+
+
+def test_between_what_was_found_and_the_bound_nothing_is_denied(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    asked = ("workspace", "--anywhere", "--cylinder", "24", "60", "--at", "-230")
+    status, out, _ = run(capsys, *asked)
+    assert status == 1
+    assert out.startswith("Not found to fit, and not proved not to: cylinder 24 mm across")
+    answer = json.loads(run(capsys, *asked, "--json")[1])["cylinder"]
+    assert answer["fits"] is None
+    assert answer["largest_width_mm"] < 24 < answer["none_above_mm"]
+
+
+def test_a_belt_that_is_too_wide_says_where_the_widest_is(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    belt = ("workspace", *COARSE, "--belt", "800", "40", "--at", "-340")
+    answer = json.loads(run(capsys, *belt, "--json")[1])["belt"]
+    assert answer["widest_mm"] < answer["none_wider_mm"] < 800
+    assert abs(answer["widest_at_mm"]) < 100
+    assert all(limit is not None for limit in answer["limits"])
+    out = run(capsys, *belt)[1]
+    assert f"at x {answer['widest_at_mm']:.1f} mm" in out
+    assert all(f"the {limit}" in out for limit in answer["limits"])
+
+
+def test_a_belt_beside_the_axis_of_which_enough_must_be_served(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    belt = ("workspace", *COARSE, "--belt", "120", "40", "--at", "-340", "--offset", "60")
+    status, out, _ = run(capsys, *belt, "--stretch", "100")
+    assert status == 0
+    assert out.splitlines()[1].startswith("  It ends at the ")
+    status, out, _ = run(capsys, *belt, "--stretch", "1000")
+    assert status == 1
+    assert out.startswith("Not served for long enough: ")
+    assert "of 1000 asked for" in out
+
+
+@pytest.mark.parametrize(
+    ("robot", "limits", "left_out"),
+    [
+        (
+            "stm32 without bodies",
+            ["reach", "joints", "ball-joints", "singularities"],
+            ["collisions"],
+        ),
+        ("fivebar", ["reach", "joints", "singularities"], ["ball-joints", "collisions"]),
+        ("stm32", ["reach", "joints", "ball-joints", "singularities", "collisions"], []),
+    ],
+)
+def test_only_limits_that_were_considered_are_told(
+    capsys: pytest.CaptureFixture[str],
+    tmp_path: Path,
+    robot: str,
+    limits: list[str],
+    left_out: list[str],
+) -> None:
+    if robot.endswith(" without bodies"):
+        text = re.sub(r"\[bodies\][^\[]*", "", preset_text("stm32"))
+        robot = str(tmp_path / "bare.toml")
+        Path(robot).write_text(text)
+    size = ("--box", "9", "9") if robot == "fivebar" else ("--box", "9", "9", "9")
+    asked = ("workspace", *COARSE, "--robot", robot, *size, "--at", "-250")
+    data = json.loads(run(capsys, *asked, "--json")[1])
+    assert data["limits"] == limits
+    assert list(data["not_considered"]) == left_out
+    out = run(capsys, *asked)[1]
+    assert [line for line in out.splitlines() if line.startswith("Not considered: ")] == [
+        f"Not considered: {name}; {data['not_considered'][name]}." for name in left_out
+    ]
+
+
+def test_points_without_end_are_refused(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    path = tmp_path / "points.csv"
+    asked = ("workspace", "--robot", "fivebar", "--box", "10", "10", "--csv", str(path))
+    status, _, err = run(capsys, *asked, "--resolution", "0.002")
+    assert status == 1
+    assert err.startswith("deltaviz: --resolution: a spacing of 0.002 mm makes ")
+    assert not path.exists()
+    possible = float(err.split("use ")[1].split(" mm")[0])
+    box = load_robot("fivebar").workspace().box
+    assert np.prod(Grid.around(box, possible).shape) <= MOST_NODES
+
+
+@pytest.mark.parametrize(
     ("arguments", "says"),
     [
+        (("--stretch", "9"), "--stretch needs --belt"),
+        (("--offset", "9"), "--offset needs --belt"),
         (("--cylinder", "-3", "10"), "must be greater than 0"),
         (("--box", "10"), "--box takes 3 lengths for this robot; got 1"),
         (("--belt", "100"), "--belt needs --at Z"),
@@ -217,8 +337,24 @@ def test_without_matplotlib_it_says_how_to_get_it(
 
 
 def test_the_notebook_has_a_figure() -> None:
-    figure = load_robot("fivebar").workspace(tolerance=5.0).plot()
-    assert figure.axes
+    figure: Any = load_robot("fivebar").workspace(tolerance=5.0).plot()
+    assert Image.open(BytesIO(figure._repr_png_())).size[0] > 400
+
+
+def test_the_boundary_is_coloured_by_the_scale_of_the_sections(stm32: Workspace) -> None:
+    figure = stm32.plot(colour="condition")
+    space, *views = (axes for axes in figure.axes if axes.get_title())
+    surface = space.collections[0]
+    values = np.asarray(surface.get_array())
+    centres = stm32.boundary.vertices[stm32.boundary.faces].mean(axis=1)
+    expected = stm32.quality(centres).condition
+    near = np.isfinite(values) & np.isfinite(expected)
+    assert near.mean() > 0.9
+    assert np.median(np.abs(values[near] / expected[near] - 1)) < 0.03
+    for view in views:
+        (section,) = (c for c in view.collections if type(c).__name__ == "QuadMesh")
+        assert section.get_clim() == surface.get_clim()
+        assert section.get_cmap().name == surface.get_cmap().name
 
 
 def test_other_commands_load_none_of_it() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +13,12 @@ from deltaviz.mechanism.threads import in_threads
 from deltaviz.robots.workspace import margins_compiled as compiled
 from deltaviz.robots.workspace.cells import Box
 from deltaviz.robots.workspace.margins import Margins
+
+MOST_NODES = 100_000_000  # some gigabytes, with what is computed of each
+
+
+class TooFine(ValueError):
+    """A grid of more nodes than memory holds; says which spacing is possible."""
 
 
 @dataclass(frozen=True)
@@ -24,9 +31,17 @@ class Grid:
 
     @classmethod
     def around(cls, box: Box, cell: float) -> Grid:
-        """Over the box and at least a cell beyond it on every side, nodes at whole cells from 0."""
+        """Over the box and at least a cell beyond it on every side, nodes at whole cells from 0.
+        Raises TooFine."""
         low = np.floor(box.low / cell) - 1
         high = np.ceil(box.high / cell) + 1
+        nodes = float(np.prod(high - low + 1))
+        if nodes > MOST_NODES:
+            least = cell * (nodes / MOST_NODES) ** (1 / len(low))
+            raise TooFine(
+                f"a spacing of {cell:g} mm makes {nodes:.2g} points, and at most {MOST_NODES:.0e} "
+                f"are possible: use {_up(least)} mm or more"
+            )
         return cls(low * cell, cell, tuple(int(n) for n in high - low + 1))
 
     @property
@@ -34,6 +49,12 @@ class Grid:
         return tuple(
             low + self.cell * np.arange(n) for low, n in zip(self.low, self.shape, strict=True)
         )
+
+
+def _up(length: float) -> str:
+    """To two digits, a little more."""
+    digit = 10.0 ** (math.floor(math.log10(length)) - 1)
+    return f"{math.ceil(1.02 * length / digit) * digit:g}"
 
 
 @dataclass(frozen=True)

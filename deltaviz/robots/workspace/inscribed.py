@@ -19,27 +19,18 @@ from deltaviz.robots.workspace.clearances import Clearances, clearances
 from deltaviz.robots.workspace.margins import Margins
 from deltaviz.robots.workspace.places import places
 from deltaviz.robots.workspace.search import Found, Seek, search
+from deltaviz.robots.workspace.sketch import PLACES, Sketch, Wanted, at_first, refined
 from deltaviz.robots.workspace.stems import Stem, Within
 
-PLACES = 300  # along a line at the beginning
-RAYS = 90  # from each
-RAYS_IN_TURN = (90, 360, 360, 1440, 1440, 1440)
-FINER = 12  # places put between those at either end of a body, time after time
-ROUNDS = 5
+RAYS = 96  # from each place, all around
+HALVINGS = 8  # of the angle between two rays where the outside comes nearest
+TURNS = 16
+ROUNDS = 8
+SHARE = 1 / 4  # of the tolerance, that a sketch may leave open
+LITTLE = 1 / 2  # of the tolerance, that a body whose length is given is sketched longer
+BUDGET = 4_000_000  # boxes: along flat walls a search needs many
+QUICK_BUDGET = 500_000  # while a body may yet be sketched longer instead
 STEP = 2  # tolerances: lines nearer than this are not told apart
-
-
-@dataclass(frozen=True)
-class Wanted:
-    """What is given of a body: its length, where it starts, and where its line stands.
-
-    What is None is to be chosen: so that the volume is largest, or with the length given the
-    thickness.
-    """
-
-    length: float | None = None
-    start: float | None = None
-    centre: Array | None = None
 
 
 @dataclass(frozen=True)
@@ -55,31 +46,18 @@ class Body:
     bound: float
     touches: Array | None
 
-    def worth(self, stem: Stem, wanted: Wanted) -> float:
-        if wanted.length is not None:
-            return self.thickness
-        return (self.end - self.start) * self.thickness**stem.power
-
-
-@dataclass(frozen=True)
-class _Sketch:
-    """A body between rays, with the places at its ends and those next to them; and what none
-    about this line can be worth more than."""
-
-    centre: Array
-    start: float
-    end: float
-    thickness: float
-    worth: float
-    bound: float
-    ends: tuple[tuple[float, float], ...]
+    def worth(self, stem: Stem, wanted: Wanted, more: float = 0.0) -> float:
+        """Of a body that is `more` mm thicker and longer."""
+        length = self.end - self.start + more
+        return wanted.worth(length, self.thickness + more, stem.power)
 
 
 def largest(
     margins: Margins, box: Box, stem: Stem, wanted: Wanted, tolerance: float
 ) -> Body | None:
-    """`box` must hold the workspace. About a given line the bound is met within about
-    `tolerance` mm; over all lines the bound is some hundredths wider. None if nothing fits."""
+    """`box` must hold the workspace. About a given line a thickness is within `tolerance` mm of
+    the bound; over all lines the bound is wider by some hundredths of the box. None if nothing
+    fits."""
     if wanted.centre is not None:
         return _proved(margins, box, stem, wanted, wanted.centre, tolerance)
     # Collisions take long, and bind at few places: those lines are judged without.
@@ -112,162 +90,106 @@ def _ways(dimensions: int) -> Iterator[Array]:
             yield way
 
 
-def _glance(margins: Margins, box: Box, stem: Stem, wanted: Wanted, centre: Array) -> _Sketch:
-    return _sketch(margins, box, stem, wanted, centre, rounds=2, rays=RAYS // 2, count=PLACES // 2)
+def _glance(margins: Margins, box: Box, stem: Stem, wanted: Wanted, centre: Array) -> Sketch:
+    def measure(places: Array) -> Clearances:
+        return clearances(margins, stem, box, centre, places, RAYS // 2)
+
+    known = measure(at_first(box, stem, wanted, PLACES // 2))
+    most = max(0.0, stem.most(box, centre))
+    return refined(known, measure, stem, wanted, centre, most, rounds=2, slack=0.0)[0]
 
 
 def _proved(
     margins: Margins, box: Box, stem: Stem, wanted: Wanted, centre: Array, tolerance: float
 ) -> Body | None:
-    """Sketches are shrunk on all sides that are free until they are proved to lie within; what
-    the search by boxes finds joins what rays find, until it is no more than the tolerance.
+    """Sketches are shrunk until they are proved to lie within; what the search by boxes finds
+    joins what rays find, until it is no more than the tolerance.
 
-    So a body of a given length is sketched that much longer.
+    A given length is kept, so a body is shrunk across; but where an end lies along a wall, a
+    little outside there would cost much across: it is sketched longer, to be shrunk there too.
     """
-    whole = wanted.length is not None and wanted.start is not None
-    spare = 0.0 if whole or wanted.length is None else 2 * tolerance
-    best: Body | None = None
-    bound = math.inf
-    met = Clearances(np.empty(0), np.empty(0))
-    for rays in RAYS_IN_TURN:
-        sketch = _sketch(
-            margins, box, stem, wanted, centre, rounds=ROUNDS, rays=rays, met=met, spare=spare
-        )
+
+    def measure(places: Array) -> Clearances:
+        return clearances(margins, stem, box, centre, places, RAYS, halvings=HALVINGS)
+
+    most = max(0.0, stem.most(box, centre))
+    known = measure(at_first(box, stem, wanted))
+    best, bound, spare = None, math.inf, 0.0
+    free_ends = wanted.length is not None and wanted.start is None
+    for _ in range(TURNS):
+        sketch, known = refined(
+            known, measure, stem, wanted, centre, most,
+            rounds=ROUNDS, slack=SHARE * tolerance, spare=spare,
+        )  # fmt: skip
         bound = min(bound, sketch.bound)
-        if sketch.thickness <= 0 or sketch.end < sketch.start:
+        if sketch.nothing:
             break
-        start = -math.inf if wanted.start is not None else sketch.start
-        end = math.inf if whole else sketch.end
-        inside = Within(stem, centre, start, end, sketch.thickness)
-        deep = _deepest(margins, box, inside, sketch, tolerance / 2)
-        shrunk = _shrunk(sketch, max(0.0, deep.bound), wanted, deep.point)
+        fine = min(tolerance / 2, spare / 4) if spare else tolerance / 2
+        deep = _deepest(margins, box, stem, wanted, sketch, fine, spare)
+        shrunk = _shrunk(sketch, max(0.0, deep.bound), wanted, spare, deep.point)
         if best is None or shrunk.worth(stem, wanted) > best.worth(stem, wanted):
             best = shrunk
-        if deep.point is None:
+        if bound <= best.worth(stem, wanted, tolerance):
             break
-        if spare and 2 * deep.bound > spare:
-            spare = 2.2 * deep.bound  # the search gave up early: leave it room at the ends
-        elif deep.value <= tolerance:  # more rays would find no more
+        gave_up = deep.bound > max(deep.value, 0.0) + 1.01 * fine
+        if gave_up and (not free_ends or spare > 2 * deep.bound):
             break
-        place = deep.point[[stem.axis]]
-        aside = stem.distance(deep.point[list(stem.across)] - centre)
-        met = met.joined(Clearances(place, np.array([float(aside)])))
+        if free_ends and (gave_up or (not spare and _at_an_end(deep, stem, sketch, tolerance))):
+            spare = 2.2 * deep.bound if spare else LITTLE * tolerance
+        elif deep.point is None:
+            break
+        if deep.point is not None:
+            place = deep.point[[stem.axis]]
+            aside = stem.distance(deep.point[list(stem.across)] - centre)
+            met = Clearances(place, np.array([float(aside)]))
+            known = known.joined(met).joined(measure(place))
     if best is None or best.thickness <= 0 or best.end <= best.start:
         return None
     return replace(best, bound=bound)
 
 
+def _at_an_end(deep: Found, stem: Stem, sketch: Sketch, tolerance: float) -> bool:
+    if deep.point is None:
+        return False
+    place = float(deep.point[stem.axis])
+    return min(place - sketch.start, sketch.end - place) < LITTLE * tolerance
+
+
 def _deepest(
-    margins: Margins, box: Box, inside: Within, sketch: _Sketch, tolerance: float
-) -> Found:
-    region = Box(box.low.copy(), box.high.copy())
-    stem = inside.stem
-    across, half = list(stem.across), stem.sides * sketch.thickness
-    region.low[stem.axis], region.high[stem.axis] = sketch.start, sketch.end
-    region.low[across], region.high[across] = sketch.centre - half, sketch.centre + half
-    return search(margins, region, inside, Seek.OUTSIDE, tolerance=tolerance, above=0.0)
-
-
-def _shrunk(sketch: _Sketch, by: float, wanted: Wanted, point: Array | None) -> Body:
-    """On all sides that may give; a given length is kept, or else it does not fit."""
-    thick = sketch.thickness - by
-    if wanted.length is None:
-        start = sketch.start if wanted.start is not None else sketch.start + by
-        return Body(sketch.centre, start, sketch.end - by, thick, math.inf, point)
-    if wanted.start is not None:
-        return Body(sketch.centre, sketch.start, sketch.end, thick, math.inf, point)
-    middle = (sketch.start + sketch.end) / 2
-    fits = sketch.end - sketch.start - 2 * by >= wanted.length
-    start, end = middle - wanted.length / 2, middle + wanted.length / 2
-    return Body(sketch.centre, start, end, thick if fits else 0.0, math.inf, point)
-
-
-def _sketch(
     margins: Margins,
     box: Box,
     stem: Stem,
     wanted: Wanted,
-    centre: Array,
-    *,
-    rounds: int,
-    rays: int,
-    count: int = PLACES,
-    met: Clearances | None = None,
-    spare: float = 0.0,
-) -> _Sketch:
-    low, high = float(box.low[stem.axis]), float(box.high[stem.axis])
-    if wanted.start is not None:
-        low = wanted.start
-        high = low + wanted.length if wanted.length is not None else max(high, low)
-    most = max(0.0, stem.most(box, centre))
-    known = clearances(margins, stem, box, centre, np.linspace(low, high, count), rays)
-    known = known if met is None else known.joined(met)
-    for _ in range(rounds):
-        sketch = _between(known, stem, wanted, centre, most, spare)
-        finer = [np.linspace(a, b, FINER + 2)[1:-1] for a, b in sketch.ends if b > a]
-        if not finer:
-            break
-        more = np.sort(np.concatenate(finer))
-        known = known.joined(clearances(margins, stem, box, centre, more, rays))
-    return _between(known, stem, wanted, centre, most, spare)
+    sketch: Sketch,
+    tolerance: float,
+    spare: float,
+) -> Found:
+    """Of the points outside that a sketch holds, that which it must be shrunk by most to lose."""
+    start, end = sketch.start, sketch.end
+    if wanted.start is not None or (wanted.length is not None and not spare):
+        start = -math.inf
+    if wanted.length is not None and not spare:
+        end = math.inf
+    free_ends = wanted.length is not None and wanted.start is None
+    budget = QUICK_BUDGET if free_ends and not spare else BUDGET
+    inside = Within(stem, sketch.centre, start, end, sketch.thickness)
+    region = Box(box.low.copy(), box.high.copy())
+    across, half = list(stem.across), stem.sides * sketch.thickness
+    region.low[stem.axis], region.high[stem.axis] = sketch.start, sketch.end
+    region.low[across], region.high[across] = sketch.centre - half, sketch.centre + half
+    return search(
+        margins, region, inside, Seek.OUTSIDE, tolerance=tolerance, above=0.0, budget=budget
+    )
 
 
-def _between(
-    known: Clearances, stem: Stem, wanted: Wanted, centre: Array, most: float, spare: float
-) -> _Sketch:
-    t, taken = known.places, known.taken
-    if wanted.length is not None and wanted.start is not None:
-        thick = float(taken.min())
-        return _Sketch(centre, float(t[0]), float(t[-1]), thick, thick, thick, ())
-    if wanted.length is not None:
-        return _of_length(t, taken, wanted.length, spare, centre, most)
-    return _of_any_length(t, taken, stem.power, centre, most, fixed=wanted.start is not None)
-
-
-def _of_length(
-    t: Array, taken: Array, length: float, spare: float, centre: Array, most: float
-) -> _Sketch:
-    longer = length + spare
-    starts = np.concatenate((t, t - longer))
-    starts = starts[(starts >= t[0]) & (starts + longer <= t[-1])]
-    if not len(starts):
-        return _Sketch(centre, 0.0, -1.0, 0.0, 0.0, 0.0, ())
-    first = np.searchsorted(t, starts, "left")
-    after = np.searchsorted(t, starts + longer, "right")
-    thick = [float(taken[a:b].min(initial=most)) for a, b in zip(first, after, strict=True)]
-    best = int(np.argmax(thick))
-    start, end = float(starts[best]), float(starts[best]) + longer
-    # One that begins between two places holds those from the second up to the first's end.
-    ahead = np.searchsorted(t, t[:-1] + length, "right")
-    bound = max(float(taken[i + 1 : ahead[i]].min(initial=most)) for i in range(len(t) - 1))
-    ends = [_around(t, start), _around(t, end)]
-    for place, shift in ((start, longer), (end, -longer)):
-        a, b = _around(t, place)
-        ends.append((max(a + shift, float(t[0])), min(b + shift, float(t[-1]))))
-    return _Sketch(centre, start, end, thick[best], thick[best], bound, tuple(ends))
-
-
-def _around(t: Array, place: float) -> tuple[float, float]:
-    """The places next to one on either side."""
-    i = int(np.searchsorted(t, place))
-    return float(t[max(i - 1, 0)]), float(t[min(i + 1, len(t) - 1)])
-
-
-def _of_any_length(
-    t: Array, taken: Array, power: int, centre: Array, most: float, *, fixed: bool
-) -> _Sketch:
-    best = (-1.0, 0, 0, 0.0)
-    bound = float(np.diff(t).max(initial=0.0)) * most**power  # of one that holds no place
-    before, after = np.concatenate((t[:1], t[:-1])), np.concatenate((t[1:], t[-1:]))
-    for i in range(1 if fixed else len(t)):
-        thick = np.minimum(np.minimum.accumulate(taken[i:]), most)
-        worth = (t[i:] - t[i]) * thick**power
-        j = int(worth.argmax())
-        if worth[j] > best[0]:
-            best = (float(worth[j]), i, i + j, float(thick[j]))
-        # It may begin just after the place before, and end just before the place after.
-        bound = max(bound, float(((after[i:] - before[i]) * thick**power).max()))
-    worth, i, j, thick = best
-    ends = () if fixed else ((float(before[i]), float(t[i])),)
-    ends += ((float(t[j]), float(after[j])),)
-    return _Sketch(centre, float(t[i]), float(t[j]), thick, worth, bound, ends)
+def _shrunk(sketch: Sketch, by: float, wanted: Wanted, spare: float, point: Array | None) -> Body:
+    """On all sides that may give; a given length is kept, or else it does not fit."""
+    start, end, thick = sketch.start, sketch.end, sketch.thickness - by
+    if wanted.length is None:
+        start = start if wanted.start is not None else start + by
+        end -= by
+    elif wanted.start is None:
+        middle = (start + end) / 2
+        start, end = middle - wanted.length / 2, middle + wanted.length / 2
+        thick = thick if 2 * by <= spare or not spare else 0.0
+    return Body(sketch.centre, start, end, thick, math.inf, point)

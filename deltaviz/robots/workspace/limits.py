@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from enum import Flag, auto
 
+from deltaviz.mechanism import RotaryDelta
+from deltaviz.robots.robot import Robot
+
 
 class Limit(Flag):
     """Kinds of limit; a workspace is the set of points that keep those asked for.
@@ -22,3 +25,15 @@ class Limit(Flag):
 
     MACHINE = REACH | JOINTS | BALL_JOINTS | SINGULARITIES | COLLISIONS
     ALL = MACHINE | ZONE
+
+
+def not_considered(robot: Robot, limits: Limit) -> dict[Limit, str]:
+    """Which of these limits count for nothing with a robot, and why."""
+    out: dict[Limit, str] = {}
+    if Limit.BALL_JOINTS in limits and robot.joints.ball_joint_max is None:
+        out[Limit.BALL_JOINTS] = "this kind of robot has none"
+    if Limit.COLLISIONS in limits and not isinstance(robot.mechanism, RotaryDelta):
+        out[Limit.COLLISIONS] = "they are not known of this kind of robot"
+    elif Limit.COLLISIONS in limits and robot.bodies is None:
+        out[Limit.COLLISIONS] = "the robot file has no section [bodies]"
+    return out

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from deltaviz.robots.workspace.workspace import Empty, Workspace
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.cm import ScalarMappable
     from matplotlib.figure import Figure
 
 SURFACE, EDGE, ZONE, ARMS = "#5b8db8", "#24506f", "#c26a1b", "#444444"
@@ -27,7 +29,7 @@ class PlotsMissing(ImportError):
 def plot(workspace: Workspace, path: str | None = None, *, colour: str | None = None) -> Figure:
     """See `Workspace.plot`. Raises PlotsMissing, Empty, and ValueError for an unknown measure."""
     try:
-        from matplotlib.figure import Figure
+        import matplotlib.figure  # noqa: F401
     except ImportError as error:
         raise PlotsMissing(
             "pictures need matplotlib: install it with `pip install 'deltaviz[plot]'`"
@@ -36,18 +38,48 @@ def plot(workspace: Workspace, path: str | None = None, *, colour: str | None = 
         raise ValueError(f"no measure {colour!r}; there are {', '.join(Quality.measures())}")
     if workspace.empty:
         raise Empty(workspace.reason)
+    from deltaviz.robots.workspace.figure import ShownFigure
+
+    colours = None if colour is None else _Colours.of(workspace, colour)
     if workspace.margins.dimensions == 2:
-        figure = Figure(figsize=(7.0, 6.0), layout="constrained")
-        _planar(workspace, figure.add_subplot(), colour)
+        figure = ShownFigure(figsize=(7.0, 6.0), layout="constrained")
+        _planar(workspace, figure.add_subplot(), colours)
     else:
-        figure = Figure(figsize=(11.0, 9.5), layout="constrained")
-        _space(workspace, figure.add_subplot(2, 2, 1, projection="3d"))
+        figure = ShownFigure(figsize=(11.0, 9.5), layout="constrained")
+        _space(workspace, figure.add_subplot(2, 2, 1, projection="3d"), colours)
         for place, view in enumerate(VIEWS, start=2):
-            _view(workspace, figure.add_subplot(2, 2, place), view, colour)
+            _view(workspace, figure.add_subplot(2, 2, place), view, colours)
+    if colours is not None:
+        figure.colorbar(colours.key, ax=figure.axes, shrink=0.6)
     figure.suptitle(_title(workspace, colour))
     if path is not None:
         figure.savefig(path, dpi=110, bbox_inches="tight")
     return figure
+
+
+@dataclass(frozen=True)
+class _Colours:
+    """One scale for all that is drawn; `key` maps the measure's values to colours."""
+
+    measure: str
+    key: ScalarMappable
+
+    @classmethod
+    def of(cls, workspace: Workspace, measure: str) -> _Colours:
+        from matplotlib.cm import ScalarMappable
+        from matplotlib.colors import Normalize
+
+        values = getattr(workspace.quality(), measure)
+        low, high = np.nanpercentile(values, ENDS).tolist()
+        scheme = "viridis_r" if measure in WORSE_ABOVE else "viridis"
+        return cls(measure, ScalarMappable(Normalize(low, high), scheme))
+
+    def values(self, workspace: Workspace, points: Array) -> Array:
+        return np.asarray(getattr(workspace.quality(points), self.measure))
+
+    @property
+    def style(self) -> dict[str, Any]:
+        return {"cmap": self.key.cmap, "norm": self.key.norm}
 
 
 def _title(workspace: Workspace, colour: str | None) -> str:
@@ -60,11 +92,14 @@ def _title(workspace: Workspace, colour: str | None) -> str:
     return f"{name}\ncolours: {colour.replace('_deg', '').replace('_', ' ')}{unit}"
 
 
-def _space(workspace: Workspace, axes: Any) -> None:
+def _space(workspace: Workspace, axes: Any, colours: _Colours | None) -> None:
     vertices, faces = workspace.boundary.vertices, workspace.boundary.faces
-    axes.plot_trisurf(
-        *vertices.T, triangles=faces, color=SURFACE, edgecolor="none", linewidth=0, alpha=0.85
+    style = {"color": SURFACE} if colours is None else colours.style
+    surface = axes.plot_trisurf(
+        *vertices.T, triangles=faces, edgecolor="none", linewidth=0, alpha=0.85, **style
     )
+    if colours is not None:
+        surface.set_array(_of_faces(colours.values(workspace, vertices)[faces]))
     theta = np.array(workspace.robot.homing.ready)
     for line in _arms(workspace, theta, workspace.robot.forward(theta)):
         axes.plot(*line.T, color=ARMS, linewidth=1.2)
@@ -77,13 +112,22 @@ def _space(workspace: Workspace, axes: Any) -> None:
     axes.view_init(elev=18, azim=-60)
 
 
-def _view(workspace: Workspace, axes: Axes, view: tuple[str, int, int], colour: str | None) -> None:
+def _of_faces(corners: Array) -> Array:
+    """The mean of (n, 3) corners, of those that have a value: some lie just out of reach."""
+    known = np.isfinite(corners)
+    total = np.where(known, corners, 0.0).sum(axis=1)
+    return np.where(known.any(axis=1), total / np.maximum(known.sum(axis=1), 1), np.nan)
+
+
+def _view(
+    workspace: Workspace, axes: Axes, view: tuple[str, int, int], colours: _Colours | None
+) -> None:
     name, across, up = view
     third = 3 - across - up
     level = _level(workspace, third)
-    if colour is None:
+    if colours is None:
         _silhouette(workspace, axes, across, up)
-    _section(workspace, axes, (across, up), third, level, colour)
+    _section(workspace, axes, (across, up), third, level, colours)
     _zone(workspace, axes, across, up)
     theta = np.array(workspace.robot.homing.ready)
     for line in _arms(workspace, theta, workspace.robot.forward(theta)):
@@ -91,7 +135,7 @@ def _view(workspace: Workspace, axes: Axes, view: tuple[str, int, int], colour: 
     letters = "XYZ"
     axes.set_aspect("equal")
     axes.set(xlabel=f"{letters[across]} mm", ylabel=f"{letters[up]} mm")
-    shown = "section" if colour else "outline, and section"
+    shown = "section" if colours else "outline, and section"
     axes.set_title(f"{name}: {shown} at {letters[third]} {level:.4g} mm")
     axes.grid(alpha=0.25)
 
@@ -121,7 +165,7 @@ def _section(
     along: tuple[int, int],
     third: int | None,
     level: float,
-    colour: str | None,
+    colours: _Colours | None,
 ) -> None:
     """The boundary in one plane; and with a measure its colours inside."""
     dimensions = workspace.margins.dimensions
@@ -136,16 +180,10 @@ def _section(
     points[..., along[0]], points[..., along[1]] = first, second[:, None]
     margin = workspace.margins.least(points)
     axes.contour(first, second, margin, levels=[0.0], colors=EDGE, linewidths=1.2)
-    if colour is None or not (margin >= 0).any():
+    if colours is None or not (margin >= 0).any():
         return
-    value = np.where(margin >= 0, getattr(workspace.quality(points), colour), np.nan)
-    low, high = np.nanpercentile(value, ENDS)
-    scheme = "viridis_r" if colour in WORSE_ABOVE else "viridis"
-    picture = axes.pcolormesh(
-        first, second, value, cmap=scheme, vmin=low, vmax=high, rasterized=True
-    )
-    figure = axes.figure
-    figure.colorbar(picture, ax=axes, shrink=0.85)
+    value = np.where(margin >= 0, colours.values(workspace, points), np.nan)
+    axes.pcolormesh(first, second, value, rasterized=True, **colours.style)
 
 
 def _zone(workspace: Workspace, axes: Axes, across: int, up: int) -> None:
@@ -167,15 +205,15 @@ def _zone(workspace: Workspace, axes: Axes, across: int, up: int) -> None:
         axes.add_patch(Rectangle((first[0], second[0]), width, height, **style))
 
 
-def _planar(workspace: Workspace, axes: Axes, colour: str | None) -> None:
+def _planar(workspace: Workspace, axes: Axes, colours: _Colours | None) -> None:
     boundary = workspace.boundary
-    if colour is None:
+    if colours is None:
         from matplotlib.collections import LineCollection
 
         lines = boundary.vertices[boundary.faces]
         axes.add_collection(LineCollection(list(lines), colors=EDGE, linewidths=1.5))
         axes.autoscale_view()
-    _section(workspace, axes, (0, 1), None, 0.0, colour)
+    _section(workspace, axes, (0, 1), None, 0.0, colours)
     zone, theta = workspace.robot.zone, np.array(workspace.robot.homing.ready)
     if zone.x is not None:
         from matplotlib.patches import Rectangle

@@ -35,7 +35,7 @@ class Spread:
 @dataclass(frozen=True)
 class Report:
     """What `deltaviz workspace` tells. Where a robot's file does not tell masses or thicknesses,
-    what needs them is None."""
+    what needs them is None. `not_crossed` tells why its zone is not crossed, with masses."""
 
     workspace: Workspace
     extents: Box
@@ -48,6 +48,7 @@ class Report:
     payload: float
     holding: Array | None
     crossing: Torques | None
+    not_crossed: str | None
 
 
 def report(
@@ -70,6 +71,7 @@ def report(
             lambda: None if planar else workspace.largest_cylinder(floor=floor, centre=centre)
         )
         parts = pool.submit(nearest_parts, robot)
+    crossed, not_crossed = _crossing(robot, payload)
     return Report(
         workspace=workspace,
         extents=extents.result(),
@@ -81,7 +83,8 @@ def report(
         parts=parts.result(),
         payload=payload,
         holding=_holding(robot, points, payload),
-        crossing=_crossing(robot, payload),
+        crossing=crossed,
+        not_crossed=not_crossed,
     )
 
 
@@ -107,7 +110,7 @@ def as_json(found: Report) -> dict[str, Any]:
     low, high = found.extents.low.tolist(), found.extents.high.tolist()
     return {
         "robot": workspace.robot.name,
-        "limits": limit_names(workspace.limits),
+        **limits_json(workspace),
         "empty": False,
         ("area_mm2" if planar else "volume_mm3"): workspace.volume,
         "extents_mm": {a: [lo, hi] for a, lo, hi in zip(axes, low, high, strict=True)},
@@ -153,8 +156,18 @@ def shape_json(shape: Any) -> dict[str, Any]:
     return {f"{n}_mm": getattr(shape, n) for n in sorted(names) if hasattr(shape, n)}
 
 
+def limits_json(workspace: Workspace) -> dict[str, Any]:
+    """What was considered, and why what else was asked for was not."""
+    left_out = {limit_name(limit): why for limit, why in workspace.not_considered.items()}
+    return {"limits": limit_names(workspace.considered), "not_considered": left_out}
+
+
 def limit_names(limits: Limit) -> list[str]:
-    return [(limit.name or "").lower().replace("_", "-") for limit in limits | Limit.REACH]
+    return [limit_name(limit) for limit in limits]
+
+
+def limit_name(limit: Limit) -> str:
+    return (limit.name or "").lower().replace("_", "-")
 
 
 def _spreads(quality: Quality, points: Array) -> dict[str, Spread]:
@@ -194,15 +207,15 @@ def zone_way(robot: Robot) -> tuple[Array, Array]:
     return start, end
 
 
-def _crossing(robot: Robot, payload: float) -> Torques | None:
-    """None too where the way through the zone cannot be reached."""
+def _crossing(robot: Robot, payload: float) -> tuple[Torques | None, str | None]:
+    """Through the zone, or why not."""
     if robot.masses is None:
-        return None
+        return None, None
     start, end = zone_way(robot)
     try:
-        return crossing(robot, start, end, payload=payload)
-    except ValueError:
-        return None
+        return crossing(robot, start, end, payload=payload), None
+    except ValueError as error:
+        return None, str(error)
 
 
 def _torque_json(found: Report) -> dict[str, Any] | None:
@@ -218,5 +231,7 @@ def _torque_json(found: Report) -> dict[str, Any] | None:
             "duration_s": moved.duration,
             "peak_nm": moved.peak.tolist(),
             "rms_nm": moved.rms.tolist(),
+            "fastest_deg_s": np.degrees(moved.fastest).tolist(),
         },
+        "not_crossed": found.not_crossed,
     }

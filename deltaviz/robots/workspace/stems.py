@@ -11,6 +11,7 @@ from deltaviz.mechanism.arrays import Array
 from deltaviz.robots.workspace.cells import Box, Cells
 
 FAR = 1e9  # mm: beyond every workspace
+CORNERS = 8  # so many directions, or a multiple, hold those to a box's corners
 
 
 @dataclass(frozen=True)
@@ -47,17 +48,20 @@ class Stem:
         room = np.minimum(centre - box.low[across], box.high[across] - centre)
         return float((room / self.sides).min(initial=math.inf))
 
-    def rims(self, count: int) -> Array:
-        """Offsets across to the surface of the body of thickness 1, in `count` directions."""
-        if not self.across:
-            return np.zeros((1, 0))
-        if len(self.across) == 1:
-            return np.array(((-1.0,), (1.0,))) * self.sides
-        angle = np.linspace(0, 2 * np.pi, count, endpoint=False)
-        circle = np.stack((np.cos(angle), np.sin(angle)), axis=-1)
+    def rims(self, angles: Array) -> Array:
+        """(...) directions, rad, to offsets across (..., len(across)) to the surface of the body
+        of thickness 1. With one axis across a direction has but a sign."""
+        ways = np.stack((np.cos(angles), np.sin(angles)), axis=-1)[..., : len(self.across)]
         if self.half is None:
-            return circle
-        return circle / np.abs(circle).max(axis=-1, keepdims=True) * self.sides
+            return ways
+        largest = np.abs(ways).max(axis=-1, keepdims=True, initial=0.0)
+        return ways / np.maximum(largest, 1e-30) * self.sides
+
+    def angles(self, count: int) -> Array:
+        """About `count` directions, evenly spaced, a box's corners among them."""
+        if len(self.across) < 2:
+            return np.array((np.pi, 0.0))[: 1 + len(self.across)]
+        return np.linspace(0, 2 * np.pi, CORNERS * round(count / CORNERS), endpoint=False)
 
 
 @dataclass(frozen=True)

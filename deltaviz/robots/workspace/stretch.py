@@ -9,12 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deltaviz.mechanism.arrays import Array
+from deltaviz.mechanism.margin import Margin
 from deltaviz.robots.workspace.cells import Box
 from deltaviz.robots.workspace.clearances import clearances
-from deltaviz.robots.workspace.inscribed import Wanted, largest
+from deltaviz.robots.workspace.inscribed import largest
 from deltaviz.robots.workspace.margins import Margins
 from deltaviz.robots.workspace.search import Seek, search
 from deltaviz.robots.workspace.shapes import Belt
+from deltaviz.robots.workspace.sketch import Wanted
 from deltaviz.robots.workspace.stems import FAR, Stem, Within
 
 PLACES = 400
@@ -22,18 +24,28 @@ RAYS = 2
 ROUNDS = 6
 FINER = 3
 LEAST = 1.0  # mm: a shorter stretch is none
+ROUNDING = 1e-9
+SEEN = 41  # points along each side of what ends a stretch
 
 
 @dataclass(frozen=True)
 class Stretch:
     """`start`..`end` along the belt is served over its whole width and height, as is proved; None
-    if nothing is. `widest`: the widest belt in its place that a millimetre's stretch is served of,
-    mm; infinite in a plane."""
+    if nothing is.
+
+    A belt in its place that is `widest` mm wide is served for a millimetre's stretch about
+    `widest_at`, as is proved too, and none wider than `none_wider`; infinite in a plane.
+    `limits`: what ends the reach before `start` and after `end`; if nothing is served, to either
+    side of the widest. None where it goes on.
+    """
 
     belt: Belt
     start: float | None
     end: float | None
     widest: float
+    none_wider: float
+    widest_at: float | None
+    limits: tuple[Margin | None, Margin | None]
 
     @property
     def length(self) -> float:
@@ -41,7 +53,12 @@ class Stretch:
 
     @property
     def fits(self) -> bool:
-        return self.length >= max(self.belt.stretch, LEAST)
+        return self.length >= max(self.belt.stretch, LEAST - ROUNDING)
+
+    @property
+    def may_fit(self) -> bool:
+        """Nor is it proved that nothing is served."""
+        return self.start is None and self.widest < self.belt.width <= self.none_wider
 
 
 def stretch(margins: Margins, box: Box, belt: Belt, *, tolerance: float = 0.5) -> Stretch:
@@ -50,12 +67,64 @@ def stretch(margins: Margins, box: Box, belt: Belt, *, tolerance: float = 0.5) -
     around.low[-1], around.high[-1] = belt.floor, belt.floor + belt.height
     across = tuple(a for a in range(margins.dimensions - 1) if a != belt.axis)
     stem, centre = Stem(belt.axis, across), np.full(len(across), belt.offset)
-    widest = math.inf
+    body = None
     if across:
         body = largest(margins, around, stem, Wanted(length=LEAST, centre=centre), tolerance / 4)
-        widest = 0.0 if body is None else 2 * body.thickness
     ends = _served(margins, around, stem, centre, belt.width / 2, tolerance)
-    return Stretch(belt, *(ends or (None, None)), widest=widest)
+    if body is not None and 2 * body.thickness >= belt.width and (
+        ends is None or ends[1] - ends[0] < LEAST
+    ):  # fmt: skip
+        ends = body.start, body.end
+    seen = _Beside(margins, around, stem, centre, 2 * tolerance)
+    if ends is not None:
+        limits = seen.beyond_ends(ends, belt.width / 2)
+    elif body is not None:
+        limits = seen.beyond_sides((body.start, body.end), body.bound)
+    else:
+        limits = None, None
+    return Stretch(
+        belt,
+        *(ends or (None, None)),
+        widest=(0.0 if body is None else 2 * body.thickness) if across else math.inf,
+        none_wider=(0.0 if body is None else 2 * body.bound) if across else math.inf,
+        widest_at=None if body is None else (body.start + body.end) / 2,
+        limits=limits,
+    )
+
+
+@dataclass(frozen=True)
+class _Beside:
+    """What ends the reach a little, `by` mm, beyond a stretch."""
+
+    margins: Margins
+    box: Box
+    stem: Stem
+    centre: Array
+    by: float
+
+    def beyond_ends(
+        self, ends: tuple[float, float], half: float
+    ) -> tuple[Margin | None, Margin | None]:
+        start, end = ends[0] - self.by, ends[1] + self.by
+        aside = (-half, half)
+        return self._limit((start, start), aside), self._limit((end, end), aside)
+
+    def beyond_sides(
+        self, ends: tuple[float, float], half: float
+    ) -> tuple[Margin | None, Margin | None]:
+        out = half + self.by
+        return self._limit(ends, (-out, -out)), self._limit(ends, (out, out))
+
+    def _limit(self, along: tuple[float, float], aside: tuple[float, float]) -> Margin | None:
+        low, high = self.box.low.copy(), self.box.high.copy()
+        low[self.stem.axis], high[self.stem.axis] = along
+        across = list(self.stem.across)
+        low[across], high[across] = self.centre + aside[0], self.centre + aside[1]
+        axes = [np.linspace(a, b, SEEN if b > a else 1) for a, b in zip(low, high, strict=True)]
+        points = np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, len(axes))
+        margin, code = self.margins.nearest(points)
+        worst = int(margin.argmin())
+        return self.margins.names[int(code[worst])] if margin[worst] < 0 else None
 
 
 def _served(

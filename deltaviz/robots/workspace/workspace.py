@@ -19,12 +19,13 @@ from deltaviz.robots.workspace.empty import why_empty
 from deltaviz.robots.workspace.extent import ReachAtHeight, extents, reach_at
 from deltaviz.robots.workspace.field import Field, Grid, sample
 from deltaviz.robots.workspace.fit import Fit, fit
-from deltaviz.robots.workspace.inscribed import Body, Wanted, largest
+from deltaviz.robots.workspace.inscribed import Body, largest
 from deltaviz.robots.workspace.levels import levels
-from deltaviz.robots.workspace.limits import Limit
+from deltaviz.robots.workspace.limits import Limit, not_considered
 from deltaviz.robots.workspace.margins import Margins
 from deltaviz.robots.workspace.quality import Quality, quality
 from deltaviz.robots.workspace.shapes import Belt, Cuboid, Cylinder, Shape
+from deltaviz.robots.workspace.sketch import Wanted
 from deltaviz.robots.workspace.stems import Stem
 from deltaviz.robots.workspace.stretch import Stretch, stretch
 
@@ -64,6 +65,19 @@ class Workspace:
     @cached_property
     def margins(self) -> Margins:
         return Margins.of(self.robot, self.limits)
+
+    @property
+    def considered(self) -> Limit:
+        """Of `limits` those that count for this robot."""
+        out = self.limits | Limit.REACH
+        for limit in self.not_considered:
+            out &= ~limit
+        return out
+
+    @property
+    def not_considered(self) -> dict[Limit, str]:
+        """The others, and why."""
+        return not_considered(self.robot, self.limits)
 
     @cached_property
     def reason(self) -> str | None:

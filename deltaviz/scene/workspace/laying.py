@@ -98,15 +98,19 @@ class Serve:
 
 
 def _served(found: Stretch) -> str:
-    if found.fits and found.start is not None and found.end is not None:
-        along = "XY"[found.belt.axis]
+    along = "XY"[found.belt.axis]
+    before, after = ("no limit" if limit is None else str(limit) for limit in found.limits)
+    if found.start is not None and found.end is not None:
         return (
             f"served over its whole width for {found.length:.0f} mm, "
-            f"{along} {found.start:.0f} to {found.end:.0f} mm."
+            f"{along} {found.start:.0f} to {found.end:.0f} mm; it ends at: {before}, {after}."
         )
-    if found.widest <= 0:
+    if found.widest_at is None:
         return "not served over its whole width; nothing of its middle is within reach."
-    return f"not served over its whole width; at most {found.widest:.0f} mm of it are."
+    return (
+        f"not served over its whole width; {math.floor(found.widest)} mm of it are, at {along} "
+        f"{found.widest_at:.0f} mm; beyond, to either side: {before}, {after}."
+    )
 
 
 def _served_about(chart: Chart, axis: int) -> str:

@@ -31,6 +31,7 @@ MEASURES = tuple(
         ("Slowest speed", "slowest", "mm/s per rad/s"),
         ("Fastest speed", "fastest", "mm/s per rad/s"),
         ("Least force", "least_force", "N per N m"),
+        ("Most force", "most_force", "N per N m"),
         ("Near type 1", "type_1", "0 at the singularity"),
         ("Near type 2", "type_2", "0 at the singularity"),
         ("Joint margin", "joint_margin_deg", "°"),

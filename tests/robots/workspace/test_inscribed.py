@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from functools import cache
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from deltaviz.mechanism.margin import MarginKind
 from deltaviz.robots import Robot, load_robot
 from deltaviz.robots.workspace import Belt, Cuboid, Cylinder, Limit, Workspace
 from tests.robots.workspace import oracle
+from tests.robots.workspace.conftest import DELTAS
 
 ARMS = Limit.REACH | Limit.JOINTS | Limit.BALL_JOINTS
 
@@ -209,7 +211,44 @@ def test_a_belt_that_is_too_wide(stm32: Robot, space: Workspace) -> None:
     assert not found.fits
     assert (found.length, found.start) == (0.0, None)
     assert served(stm32, Belt(found.widest - 0.5, 40.0, -340.0)) is not None
-    assert served(stm32, Belt(found.widest + 1.0, 40.0, -340.0)) is None
+    assert found.none_wider < found.widest + 1.0
+    assert served(stm32, Belt(found.none_wider, 40.0, -340.0)) is None
+    assert found.widest_at is not None
+    low, high = (served_about(stm32, belt, found.widest_at, side) for side in (-1.0, 1.0))
+    assert all(
+        limit is not None and limit.kind in kinds
+        for limit, kinds in zip(found.limits, (low, high), strict=True)
+    )
+
+
+def served_about(robot: Robot, belt: Belt, place: float, side: float) -> set[MarginKind]:
+    """What keeps the tool tip from going to one side of a belt of any width."""
+    z = belt.floor + np.linspace(0, belt.height, 9)
+    y = side * np.linspace(0, 400, 1601)
+    grid = np.array([[(place, aside, up) for up in z] for aside in y])
+    free = oracle.reached(robot, grid.reshape(-1, 3)).reshape(len(y), -1)
+    first = int(np.flatnonzero(~free.all(axis=1))[0])
+    outside = grid[first + 2][~free[first + 2]]
+    return {why.limit.kind for point in outside for why in robot.reach(point).reasons}
+
+
+def test_a_belt_near_the_widest_gets_no_contradictory_answer(space: Workspace) -> None:
+    """What is told to be served at a width, is."""
+    widest = space.serve(Belt(800.0, 0.0, -230.0)).widest
+    found = space.serve(Belt(widest - 0.01, 0.0, -230.0))
+    assert found.fits
+    assert found.widest >= widest - 0.01
+
+
+def test_what_ends_the_stretch_of_a_belt(stm32: Robot, space: Workspace) -> None:
+    found = space.serve(Belt(200.0, 40.0, -340.0))
+    assert found.start is not None
+    assert found.end is not None
+    for limit, place in zip(found.limits, (found.start - 1.0, found.end + 1.0), strict=True):
+        assert limit is not None
+        grid = [(place, y, z) for y in np.linspace(-100, 100, 81) for z in (-340, -320, -300)]
+        broken = {why.limit.kind for point in grid for why in stm32.reach(point).reasons}
+        assert limit.kind in broken
 
 
 def test_a_flat_cylinder_between_parts_that_nearly_touch() -> None:
@@ -221,3 +260,54 @@ def test_a_flat_cylinder_between_parts_that_nearly_touch() -> None:
     assert isinstance(found.shape, Cylinder)
     assert (workspace.margins.least(skin_of_cylinder(found.shape)) >= 0).all()
     assert found.most < found.shape.diameter + 3
+
+
+@cache
+def workspace_of(name: str) -> Workspace:
+    return load_robot(name).workspace()
+
+
+def widest(
+    workspace: Workspace, aspect: float | None, height: float, floor: float | None = None
+) -> tuple[float, float, float]:
+    """(found, none above, where it stands) of a centred box whose second side is `aspect` times
+    its first, or with None of a cylinder."""
+    if aspect is None:
+        found = workspace.largest_cylinder(height=height, floor=floor)
+    else:
+        found = workspace.largest_box(height=height, floor=floor, centre=(0.0, 0.0), aspect=aspect)
+    if found is None:
+        return 0.0, 0.0, math.nan
+    shape = found.shape
+    width = shape.diameter if isinstance(shape, Cylinder) else shape.size[0]
+    return width, found.most, shape.floor
+
+
+@pytest.mark.parametrize("share", [0.15, 0.45])
+@pytest.mark.parametrize("aspect", [None, 1.0, 1.5, 0.6])
+@pytest.mark.parametrize("name", DELTAS)
+def test_what_is_found_is_as_wide_as_what_is_proved(
+    name: str, aspect: float | None, share: float
+) -> None:
+    """On each side within a quarter of the resolution, wherever it stands; and no floor is better
+    than the one that was chosen."""
+    workspace = workspace_of(name)
+    height = share * float(workspace.extents.size[2])
+    found, most, chosen = widest(workspace, aspect, height)
+    assert 0 < found <= most <= found + 2 * workspace.fine
+    floors = chosen + height * np.array((-0.01, 0.002))
+    at_a_floor = [widest(workspace, aspect, height, z)[0] for z in (*floors.tolist(), chosen)]
+    assert max(at_a_floor) <= found + 2 * workspace.fine
+
+
+@pytest.mark.parametrize(
+    ("name", "sides", "height"), [("stm32", 300.0, 100.0), ("zheng2023", 780.0, 200.0)]
+)
+def test_a_box_that_stands_on_some_floor_stands_without_one(
+    name: str, sides: float, height: float
+) -> None:
+    """Its corners touch where few rays go."""
+    workspace = workspace_of(name)
+    floor = {"stm32": -350.02, "zheng2023": -845.9}[name]
+    assert workspace.fit(Cuboid((sides, sides), height, floor, (0.0, 0.0))).fits
+    assert widest(workspace, 1.0, height)[0] >= sides

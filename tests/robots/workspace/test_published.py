@@ -96,10 +96,17 @@ def test_what_zhengs_wide_cylinder_takes(
     assert workspace.fit(Cylinder(1120.0, 160.0, -780.0)).fits is fits
 
 
-def test_a_sheet_of_paper_under_the_drawing_robot() -> None:
-    """US letter, laid where the zone says the pen draws: inside, corners too."""
+@pytest.mark.parametrize(
+    ("z", "corners_reached"), [(-225.0, 4), (-235.0, 4), (-245.0, 2), (-275.0, 0)]
+)
+def test_a_sheet_of_paper_under_the_drawing_robot(z: float, corners_reached: int) -> None:
+    """US letter, as its zone says: its corners are reached in the zone's upper part only."""
     robot = load_robot("deltadraw")
-    z = robot.zone.z[0]
+    assert (robot.zone.x, robot.zone.y) == ((-107.95, 107.95), (-139.7, 139.7))
+    assert robot.zone.z[0] <= z <= robot.zone.z[1]
     corners = np.array([(x, y, z) for x in (-107.95, 107.95) for y in (-139.7, 139.7)])
     reached = robot.workspace().margins.least(corners) >= 0
-    np.testing.assert_array_equal(reached, oracle.reached(robot, corners) & reached)
+    assert reached.sum() == corners_reached
+    np.testing.assert_array_equal(reached, oracle.reached(robot, corners))
+    middle = np.array([(0.0, 0.0, z)])
+    assert oracle.reached(robot, middle).all()
