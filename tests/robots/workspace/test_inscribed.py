@@ -283,9 +283,17 @@ def widest(
     return width, found.most, shape.floor
 
 
-@pytest.mark.parametrize("share", [0.15, 0.45])
-@pytest.mark.parametrize("aspect", [None, 1.0, 1.5, 0.6])
-@pytest.mark.parametrize("name", DELTAS)
+SHARES, ASPECTS = (0.15, 0.45), (None, 1.0, 1.5, 0.6)
+QUICK = {("stm32", None, 0.15), ("stm32", 1.5, 0.45), ("zheng2023", 1.0, 0.45)}
+
+
+@pytest.mark.parametrize(
+    ("name", "aspect", "share"),
+    [
+        pytest.param(*case, marks=() if case in QUICK else pytest.mark.long)
+        for case in itertools.product(DELTAS, ASPECTS, SHARES)
+    ],
+)
 def test_what_is_found_is_as_wide_as_what_is_proved(
     name: str, aspect: float | None, share: float
 ) -> None:
