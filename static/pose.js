@@ -11,14 +11,12 @@ import { byId, make, setText } from "./dom.js";
 import { formatNumber } from "./numbers.js";
 import { obstacleToMovingThere } from "./obstacle.js";
 import { AXES, jointName } from "./robot.js";
-
-/** How long a slider keeps the value that it was let go at, until the command follows. */
-const ECHO_MS = 600;
+import { Echo } from "./slider.js";
 
 /** Arrow keys change a slider many times; one move follows when they pause. */
 const KEYS_MS = 150;
 
-/** @typedef {{input: HTMLInputElement, output: HTMLElement, held: boolean, touched: number}} Slider */
+/** @typedef {{input: HTMLInputElement, output: HTMLElement, held: boolean, echo: Echo}} Slider */
 
 export class Pose {
   #box = byId("sliders", HTMLElement);
@@ -49,7 +47,7 @@ export class Pose {
       sliders.forEach((slider, i) => {
         if (slider === null) return;
         slider.input.disabled = barred;
-        const free = !slider.held && performance.now() - slider.touched > ECHO_MS;
+        const free = !slider.held && slider.echo.over;
         const value = command?.[i];
         if (free && value !== undefined) slider.input.value = String(value);
         const shown = slider.held ? Number(slider.input.value) : reported?.[i];
@@ -83,7 +81,7 @@ export class Pose {
       });
       const output = make("span", { class: "numbers" }, "–");
       this.#box.append(make("label", { class: "row" }, make("span", { class: "label" }, name), input, output));
-      return { input, output, held: false, touched: -Infinity };
+      return { input, output, held: false, echo: new Echo() };
     });
     this.#groups.push({ field, sliders });
     sliders.forEach((slider, i) => slider && this.#listen(slider, i, field, sliders));
@@ -102,7 +100,7 @@ export class Pose {
     });
     slider.input.addEventListener("change", () => {
       slider.held = false;
-      slider.touched = performance.now();
+      slider.echo.touch();
       clearTimeout(this.#waiting);
       this.#waiting = setTimeout(() => this.#go(field, index, sliders), KEYS_MS);
     });

@@ -7,12 +7,7 @@
  */
 
 import { byId, make, setText } from "./dom.js";
-
-/** How long an input keeps what was chosen, until the scene has told it back. */
-const ECHO_MS = 600;
-
-/** A slider in motion sends this often at most; its last value always goes out. */
-const SEND_MS = 50;
+import { Echo, paced } from "./slider.js";
 
 /** @typedef {{element: HTMLElement, update: (item: any) => void}} Drawn */
 
@@ -92,17 +87,6 @@ function newGroup(name) {
   return make("fieldset", {}, make("legend", {}, name));
 }
 
-/** What was chosen here a moment ago is not written over by what the scene has told before. */
-function echo() {
-  let touched = -Infinity;
-  return {
-    touch: () => (touched = performance.now()),
-    get free() {
-      return performance.now() - touched > ECHO_MS;
-    },
-  };
-}
-
 /**
  * @param {Extract<Item, {kind: "toggle"}>} item
  * @param {(value: boolean) => void} choose
@@ -147,17 +131,17 @@ function drawChoice(item, choose) {
 function drawSlider(item, choose) {
   const input = make("input", { type: "range" });
   const output = make("span", { class: "numbers" });
-  const own = echo();
+  const echo = new Echo();
   const send = paced(() => choose(Number(input.value)));
   input.addEventListener("input", () => {
-    own.touch();
+    echo.touch();
     setText(output, input.value);
     send();
   });
   return {
     element: make("label", { class: "row" }, make("span", { class: "label" }, item.label), input, output),
     update: ({ value, low, high, step }) => {
-      if (!own.free) return;
+      if (!echo.over) return;
       Object.assign(input, { min: String(low), max: String(high), step: String(step) });
       input.value = String(value);
       setText(output, input.value);
@@ -230,23 +214,4 @@ function drawRow(row) {
 /** @param {[number, number, number]} colour */
 function css([red, green, blue]) {
   return `rgb(${red} ${green} ${blue})`;
-}
-
-/**
- * @param {() => void} send
- * @returns {() => void} sends at once, or soon if it has sent just now
- */
-function paced(send) {
-  let last = -Infinity;
-  /** @type {number | undefined} */
-  let waiting;
-  return () => {
-    if (waiting !== undefined) return;
-    const wait = Math.max(0, last + SEND_MS - performance.now());
-    waiting = setTimeout(() => {
-      waiting = undefined;
-      last = performance.now();
-      send();
-    }, wait);
-  };
 }

@@ -7,11 +7,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from deltaviz.mechanism import FiveBar, RotaryDelta
 from deltaviz.mechanism.arrays import Array
 from deltaviz.mechanism.dynamics import Motion, RodModel, torques
 from deltaviz.robots.robot import Robot
-from deltaviz.robots.torques import straight
+from deltaviz.robots.torques import OUT_OF_REACH, straight, with_masses
 
 
 @dataclass(frozen=True)
@@ -46,7 +45,7 @@ def missed(
     )
     exact, held = (_torques(robot, m, RodModel.UNIFORM, payload) for m in (path, rest))
     if not np.isfinite(exact).all():
-        raise ValueError("the way leaves what the arms reach")
+        raise ValueError(OUT_OF_REACH)
     lumped, lumped_held = (_torques(robot, m, rods, payload) for m in (path, rest))
     return Missed(
         _off(lumped, exact),
@@ -56,9 +55,7 @@ def missed(
 
 
 def _torques(robot: Robot, motion: Motion, rods: RodModel, payload: float) -> Array:
-    mechanism, masses = robot.mechanism, robot.masses
-    assert isinstance(mechanism, RotaryDelta | FiveBar)
-    assert masses is not None
+    mechanism, masses = with_masses(robot)
     return torques(mechanism, masses, motion, payload=payload, rods=rods)
 
 

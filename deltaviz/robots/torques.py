@@ -46,7 +46,7 @@ class Torques:
 def holding(robot: Robot, points: ArrayLike, *, payload: float = 0.0) -> Array:
     """(..., d) tool tips to (..., n) N m at rest, with a payload in kg; NaN out of reach. Raises
     MassesMissing."""
-    mechanism, masses = _known(robot)
+    mechanism, masses = with_masses(robot)
     centre = rows(points, len(robot.tool_offset), "points") - np.asarray(robot.tool_offset)
     return holding_torques(mechanism, masses, mechanism.inverse(centre), payload=payload)
 
@@ -63,7 +63,7 @@ def crossing(
     """Of a straight minimum-jerk motion from rest to rest; without `duration` as quick as the
     robot's limits of speed and acceleration allow, the tool tip's and the joints'. Raises
     MassesMissing, and ValueError if the way leaves the arms' reach or the robot's limits."""
-    mechanism, masses = _known(robot)
+    mechanism, masses = with_masses(robot)
     path, duration = straight(robot, start, end, duration=duration)
     _check_way(robot, path)
     tau = torques(mechanism, masses, path, payload=payload, rods=rods)
@@ -81,7 +81,7 @@ def straight(
     robot: Robot, start: ArrayLike, end: ArrayLike, *, duration: float | None = None
 ) -> tuple[Motion, float]:
     """The motion of `crossing`, at equal steps of time, and how long it takes."""
-    mechanism, _ = _known(robot)
+    mechanism, _ = with_masses(robot)
     first, last = (rows(p, len(robot.tool_offset), "point") for p in (start, end))
     way = last - first
     t = np.linspace(0.0, 1.0, SAMPLES)[:, None]
@@ -129,7 +129,8 @@ def _check_way(robot: Robot, path: Motion) -> None:
     raise ValueError(f"the way leaves the limits, most at ({place}) mm: {name}")
 
 
-def _known(robot: Robot) -> tuple[RotaryDelta | FiveBar, Masses]:
+def with_masses(robot: Robot) -> tuple[RotaryDelta | FiveBar, Masses]:
+    """The mechanism and what its parts weigh. Raises MassesMissing."""
     if robot.masses is None or not isinstance(robot.mechanism, RotaryDelta | FiveBar):
         raise MassesMissing(
             f"{robot.name}: torques need the section [masses] in the robot file (see "

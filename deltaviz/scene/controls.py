@@ -11,6 +11,7 @@ from viser import (
     GuiButtonHandle,
     GuiCheckboxHandle,
     GuiDropdownHandle,
+    GuiHtmlHandle,
     GuiSliderHandle,
     GuiTextHandle,
 )
@@ -82,8 +83,9 @@ class Controls:
     def add_button(self, handle: GuiButtonHandle, judgement: Judgement) -> None:
         self._inputs[uuid_of(handle)] = (judgement, lambda value: value is True)
 
-    def retire(self, handle: Handle) -> None:
-        """The input was removed; what is still on the way for it is harmless."""
+    def retire(self, handle: Handle | GuiHtmlHandle) -> None:
+        """The input was removed; what is still on the way for it is harmless. What is only told has
+        none."""
         if self._inputs.pop(uuid_of(handle), None) is not None:
             self._retired.append(uuid_of(handle))
 

@@ -12,10 +12,10 @@ from typing import Any
 
 import viser
 import viser._messages as messages
-from viser import ClientHandle, GuiButtonHandle, GuiInputHandle
+from viser import ClientHandle, GuiButtonHandle, GuiHtmlHandle, GuiInputHandle
 
 
-def uuid_of(handle: GuiInputHandle[Any] | GuiButtonHandle) -> str:
+def uuid_of(handle: GuiInputHandle[Any] | GuiButtonHandle | GuiHtmlHandle) -> str:
     """The name by which a browser speaks of an input."""
     return handle._impl.uuid
 

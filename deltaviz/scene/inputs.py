@@ -17,7 +17,7 @@ from viser import (
 )
 
 from deltaviz.scene import items
-from deltaviz.scene.controls import LONGEST_TEXT, Controls, Handle, Judgement
+from deltaviz.scene.controls import LONGEST_TEXT, Controls, Judgement
 from deltaviz.scene.equals import Equal, Equals
 from deltaviz.scene.rows import Row, Rows, html_of
 
@@ -48,7 +48,6 @@ class Inputs:
         self._gui = gui
         self._controls = controls
         self._all = equals
-        self._handles: list[Handle | GuiHtmlHandle] = []
         self._equals: list[Equal] = []
 
     def toggle(self, label: str, value: bool, chosen: Callable[[bool], None]) -> GuiCheckboxHandle:
@@ -116,7 +115,6 @@ class Inputs:
                 choose=lambda _: pressed(),
             )
         )
-        self._handles.append(handle)
         return handle
 
     def readout(self, name: str, *, lines: int = 0) -> Readout:
@@ -127,34 +125,29 @@ class Inputs:
             Equal(
                 item=lambda: items.Readout(*at, readout.rows),
                 is_shown=lambda: bool(readout.rows),
-                handle=None,
+                handle=readout.handle,
                 choose=lambda _: None,
             )
         )
-        self._handles.append(readout.handle)
         return readout
 
     def retire(self) -> None:
         """The browser is gone."""
-        for handle in self._handles:
-            if not isinstance(handle, GuiHtmlHandle):
-                self._controls.retire(handle)
         for equal in self._equals:
-            self._all.remove(equal)
-        self._equals.clear()
+            self._controls.retire(equal.handle)
+        self._all.drop(self._equals)
 
     def remove(self) -> None:
         self.retire()
-        for handle in self._handles:
-            handle.remove()
-        self._handles.clear()
+        for equal in self._equals:
+            equal.handle.remove()
+        self._equals.clear()
 
     def _place(self, name: str) -> tuple[str, str]:
         return f"{self._group}: {name}", self._group
 
     def _keep(self, handle: Any, chosen: Callable[[Any], None], item: Callable[[], Any]) -> None:
         handle.on_update(by_a_person(chosen))
-        self._handles.append(handle)
 
         def choose(value: Any) -> None:
             handle.value = type(handle.value)(value)  # a whole number may come for a float

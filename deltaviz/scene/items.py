@@ -18,9 +18,13 @@ class Item:
 
 
 @dataclass(frozen=True)
-class Toggle(Item):
-    kind = "toggle"
+class Input(Item):
     label: str
+
+
+@dataclass(frozen=True)
+class Toggle(Input):
+    kind = "toggle"
     value: bool
 
     @property
@@ -29,9 +33,8 @@ class Toggle(Item):
 
 
 @dataclass(frozen=True)
-class Choice(Item):
+class Choice(Input):
     kind = "choice"
-    label: str
     value: str
     options: tuple[str, ...]
 
@@ -41,9 +44,8 @@ class Choice(Item):
 
 
 @dataclass(frozen=True)
-class Slider(Item):
+class Slider(Input):
     kind = "slider"
-    label: str
     value: float
     low: float
     high: float
@@ -55,9 +57,8 @@ class Slider(Item):
 
 
 @dataclass(frozen=True)
-class Line(Item):
+class Line(Input):
     kind = "line"
-    label: str
     value: str
     hint: str
     longest: int
@@ -68,9 +69,8 @@ class Line(Item):
 
 
 @dataclass(frozen=True)
-class Button(Item):
+class Button(Input):
     kind = "button"
-    label: str
     disabled: bool
 
     @property

@@ -5,6 +5,7 @@ from __future__ import annotations
 import html
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import ClassVar
 
 Rgb = tuple[int, int, int]
 
@@ -13,6 +14,7 @@ Rgb = tuple[int, int, int]
 class Row:
     """A row without a value is a sentence; `dot` is the colour that it speaks of."""
 
+    kind: ClassVar[str] = "row"
     text: str
     value: str = ""
     dot: Rgb | None = None
@@ -22,6 +24,7 @@ class Row:
 class ColourKey:
     """What the colours mean, from the first of `stops` to the last, in even steps."""
 
+    kind: ClassVar[str] = "colours"
     name: str
     low: str
     high: str

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -19,6 +18,7 @@ from deltaviz.scene.equals import Equals
 from deltaviz.scene.inputs import Inputs
 from deltaviz.scene.panel import Panel
 from deltaviz.scene.robot_model import RobotModel
+from deltaviz.scene.rows import Row, html_of
 from deltaviz.scene.workspace.orders import Send
 from deltaviz.scene.workspace.shown import Choices, WorkspaceShown
 
@@ -106,7 +106,7 @@ class Viewer:
 
     def tell(self, text: str) -> None:
         """A sentence above the panel's inputs; empty to take it away."""
-        content = f"<div style='font-size:12px;padding:4px 8px'>{html.escape(text)}</div>"
+        content = html_of((Row(text),) if text else ())
         if self._note.content != content:
             self._note.content = content
             self._note.visible = bool(text)

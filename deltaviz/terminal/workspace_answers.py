@@ -14,6 +14,7 @@ if TYPE_CHECKING:  # the command line starts before the layers it needs are know
     from deltaviz.mechanism.margin import Margin
     from deltaviz.robots.workspace import Belt, Cuboid, Cylinder, Fit, Inscribed, Stretch, Workspace
 
+NEITHER = "Not found to fit, and not proved not to"
 NEAR = 1.0  # mm
 _ROUNDING = 1e-6  # of what is printed: 0.1 + 0.2 is no more than 0.3
 
@@ -28,50 +29,56 @@ class Answer:
     data: dict[str, Any]
 
 
+@dataclass(frozen=True)
+class _Question:
+    """Does a body of these sides and this height fit? `best` is the largest of its height and
+    form."""
+
+    key: str
+    sides: tuple[float, ...]
+    height: float
+    best: Inscribed | None
+
+
 def answers(workspace: Workspace, options: argparse.Namespace) -> list[Answer]:
     out: list[Answer] = []
-    centre = None if options.anywhere else (0.0, 0.0)
+    place: dict[str, Any] = {"floor": options.at}
+    place["centre"] = None if options.anywhere else (0.0, 0.0)
     if options.cylinder:
         diameter, height = options.cylinder
-        best = workspace.largest_cylinder(height=height, floor=options.at, centre=centre)
-        out.append(_whether(workspace, "cylinder", (diameter,), height, best, options))
+        best = workspace.largest_cylinder(height=height, **place)
+        question = _Question("cylinder", (diameter,), height, best)
+        out.append(_whether(workspace, question, options.at))
     if options.box:
         *sides, height = options.box
-        aspect = sides[-1] / sides[0]
-        best = workspace.largest_box(height=height, floor=options.at, centre=centre, aspect=aspect)
-        out.append(_whether(workspace, "box", tuple(sides), height, best, options))
+        best = workspace.largest_box(height=height, aspect=sides[-1] / sides[0], **place)
+        question = _Question("box", tuple(sides), height, best)
+        out.append(_whether(workspace, question, options.at))
     if options.belt:
         out.append(_belt(workspace, options))
     return out
 
 
-def _whether(
-    workspace: Workspace,
-    key: str,
-    sides: tuple[float, ...],
-    height: float,
-    best: Inscribed | None,
-    options: argparse.Namespace,
-) -> Answer:
-    """`best` is the largest of the same height and form."""
+def _whether(workspace: Workspace, asked: _Question, floor: float | None) -> Answer:
     from deltaviz.robots.workspace.report import shape_json
 
-    shape = _placed(workspace, key, sides, height, best, options)
+    best, width = asked.best, asked.sides[0]
+    shape = _placed(workspace, asked, floor)
     widest = 0.0 if best is None else _width(best)
-    found = None if widest >= sides[0] else workspace.fit(shape)
+    found = None if widest >= width else workspace.fit(shape)
     data: dict[str, Any] = {**shape_json(shape), "largest_width_mm": widest}
     data["none_above_mm"] = 0.0 if best is None else best.most
     if found is None or found.fits:
-        return Answer(key, True, f"Fits: {shape}.", {"fits": True, **data})
-    denied = best is None or sides[0] > best.most
+        return Answer(asked.key, True, f"Fits: {shape}.", {"fits": True, **data})
+    denied = best is None or width > best.most
     fits, verdict = (False, "Does not fit") if denied else (None, NEITHER)
     lines = [f"{verdict}: {shape}.", *_by_how_much(found)]
     if best is not None:
-        side = "diameter" if key == "cylinder" else "first side"
-        lines.append(f"  Of this height the {side} may be {_between(widest, best.most, sides[0])}.")
+        side = "diameter" if asked.key == "cylinder" else "first side"
+        lines.append(f"  Of this height the {side} may be {_between(widest, best.most, width)}.")
     else:
         lines.append("  Nothing of this height and form was found to fit.")
-    return Answer(key, fits, "\n".join(lines), {"fits": fits, **data, **_fit_json(found)})
+    return Answer(asked.key, fits, "\n".join(lines), {"fits": fits, **data, **_fit_json(found)})
 
 
 def _between(found: float, most: float, asked: float) -> str:
@@ -81,31 +88,20 @@ def _between(found: float, most: float, asked: float) -> str:
     return f"{down(found, 2)} mm (none above {up(most, 2)} fits); {asked:.10g} mm was asked for"
 
 
-NEITHER = "Not found to fit, and not proved not to"
-
-
-def _placed(
-    workspace: Workspace,
-    key: str,
-    sides: tuple[float, ...],
-    height: float,
-    best: Inscribed | None,
-    options: argparse.Namespace,
-) -> Cylinder | Cuboid:
+def _placed(workspace: Workspace, asked: _Question, floor: float | None) -> Cylinder | Cuboid:
     """What is asked for, where the largest of its height and form stands."""
     from deltaviz.robots.workspace import Cuboid, Cylinder
 
+    best = asked.best
     centre = (0.0,) * (workspace.margins.dimensions - 1) if best is None else best.shape.centre
-    if options.at is not None:
-        floor = options.at
-    elif best is not None:
+    if floor is None and best is not None:
         floor = best.shape.floor
-    else:
+    elif floor is None:
         low, high = float(workspace.extents.low[-1]), float(workspace.extents.high[-1])
-        floor = (low + high - height) / 2
-    if key == "cylinder":
-        return Cylinder(sides[0], height, floor, centre)
-    return Cuboid(sides, height, floor, centre)
+        floor = (low + high - asked.height) / 2
+    if asked.key == "cylinder":
+        return Cylinder(asked.sides[0], asked.height, floor, centre)
+    return Cuboid(asked.sides, asked.height, floor, centre)
 
 
 def _width(best: Inscribed) -> float:

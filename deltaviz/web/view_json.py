@@ -3,26 +3,17 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict
+from dataclasses import fields
 from typing import Any
 
-from deltaviz.scene import items
+from deltaviz.scene.items import AnyItem
 from deltaviz.scene.rows import ColourKey, Row
 
 
-def view_json(shown: tuple[items.AnyItem, ...] | None) -> str:
+def view_json(shown: tuple[AnyItem, ...] | None) -> str:
     """None: the page has no view."""
-    told = None if shown is None else [_item(item) for item in shown]
-    return json.dumps({"type": "view", "items": told}, allow_nan=False)
+    return json.dumps({"type": "view", "items": shown}, default=_with_kind, allow_nan=False)
 
 
-def _item(item: items.AnyItem) -> dict[str, Any]:
-    if isinstance(item, items.Readout):
-        rows = [_row(row) for row in item.rows]
-        return {"kind": item.kind, "key": item.key, "group": item.group, "rows": rows}
-    return {"kind": item.kind, **asdict(item)}
-
-
-def _row(row: Row | ColourKey) -> dict[str, Any]:
-    kind = "colours" if isinstance(row, ColourKey) else "row"
-    return {"kind": kind, **asdict(row)}
+def _with_kind(told: AnyItem | Row | ColourKey) -> dict[str, Any]:
+    return {"kind": told.kind} | {field.name: getattr(told, field.name) for field in fields(told)}

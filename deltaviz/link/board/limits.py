@@ -9,7 +9,7 @@ from math import hypot, inf
 from deltaviz.link.board.kinematics import Vector
 from deltaviz.link.board.parameters import Parameters
 from deltaviz.link.board.queue import Knot
-from deltaviz.link.board.tip import P_STEP as TIP_STEP
+from deltaviz.link.board.tip import tip_of
 from deltaviz.link.messages import Refusal
 
 RELATIVE_SLACK = 1e-3  # of speeds and accelerations
@@ -73,8 +73,7 @@ class Limits:
 
     def _knot_outside(self, knot: Knot) -> float:
         if knot.cartesian:
-            x, y, z = (p * TIP_STEP for p in knot.p[:3])
-            return self.outside((x, y, z))
+            return self.outside(tip_of(knot))
         return self.outside_at([p * P_STEP for p in knot.p])
 
     def outside(self, tip: Vector) -> float:

@@ -52,11 +52,12 @@ def clearances(
     most = stem.most(box, centre)
     if most <= 0:
         return Clearances(places, np.zeros(len(places)))
-    angles = np.tile(stem.angles(rays), (len(places), 1))
+    directions = stem.angles(rays)
+    angles = np.tile(directions, (len(places), 1))
     taken = _taken(margins, stem, box, centre, places, angles, np.full(angles.shape, most), STEPS)
     if halvings and len(stem.across) == 2:
         angles, taken = _deepest(angles, taken)
-        step = 2 * np.pi / len(stem.angles(rays))
+        step = 2 * np.pi / len(directions)
         for _ in range(halvings):
             step /= 2
             before = angles

@@ -38,7 +38,7 @@ def plot(workspace: Workspace, path: str | None = None, *, colour: str | None = 
         raise ValueError(f"no measure {colour!r}; there are {', '.join(Quality.measures())}")
     if workspace.empty:
         raise Empty(workspace.reason)
-    from deltaviz.robots.workspace.figure import ShownFigure
+    from deltaviz.robots.workspace.figure import DPI, ShownFigure
 
     colours = None if colour is None else _Colours.of(workspace, colour)
     if workspace.margins.dimensions == 2:
@@ -53,7 +53,7 @@ def plot(workspace: Workspace, path: str | None = None, *, colour: str | None = 
         figure.colorbar(colours.key, ax=figure.axes, shrink=0.6)
     figure.suptitle(_title(workspace, colour))
     if path is not None:
-        figure.savefig(path, dpi=110, bbox_inches="tight")
+        figure.savefig(path, dpi=DPI, bbox_inches="tight")
     return figure
 
 
