@@ -5,11 +5,14 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
+import importlib
 import io
 import itertools
 import math
+import sys
 import time
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -318,6 +321,35 @@ class Endless:
             pass
 
 
+LOADS_ONCE = """
+import builtins, signal, time
+assert not hasattr(builtins, "half_loaded"), "loaded twice"
+builtins.half_loaded = True
+interrupts, handler = [], signal.getsignal(signal.SIGINT)
+def counting(number, frame):
+    interrupts.append(number)
+    handler(number, frame)
+signal.signal(signal.SIGINT, counting)
+print("loading", flush=True)
+while len(interrupts) < 3:
+    time.sleep(0.001)
+signal.signal(signal.SIGINT, handler)
+"""
+
+
+@dataclasses.dataclass(frozen=True)
+class Loading:
+    """Needs a library that cannot be loaded a second time once it is broken off, and that loads
+    until somebody has tried to break it off three times."""
+
+    folder: str
+
+    def pictures(self) -> Iterator[Fitted]:
+        sys.path.insert(0, self.folder)
+        importlib.import_module("loads_once")
+        yield Fitted(None)
+
+
 @dataclasses.dataclass(frozen=True)
 class Broken:
     def pictures(self) -> Iterator[Fitted]:
@@ -347,6 +379,22 @@ def test_a_computation_is_broken_off_by_the_next_of_its_kind(
     assert [reply.number for reply in replies] == [1, 2, 3, 1]
     assert isinstance(replies[-1].picture, Failed)
     assert "no such thing" in replies[-1].picture.text
+
+
+def test_a_library_that_loads_is_not_broken_off(
+    stand: Any,
+    worker: tuple[Worker, list[Reply]],
+    tmp_path: Path,
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    """As numba once was by a length dragged just after the start: nothing was computed any more."""
+    (tmp_path / "loads_once.py").write_text(LOADS_ONCE)
+    work, replies = worker
+    work.order((7, "reach"), Loading(str(tmp_path)))
+    stand.eventually(lambda: "loading" in capfd.readouterr().err, LONG)
+    work.order((7, "reach"), Loading(str(tmp_path)))
+    stand.eventually(lambda: replies, LONG)
+    assert [(reply.number, reply.picture) for reply in replies] == [(2, Fitted(None))]
 
 
 def test_a_process_that_dies_is_said_and_replaced(
