@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -116,3 +118,13 @@ def test_what_cannot_be_asked(capsys, arguments: list[str], status: int, says: s
     assert (found, out) == (status, "")
     assert says in err
     assert "Traceback" not in err
+
+
+def test_an_address_that_cannot_be_is_said_in_a_line(tmp_path: Path) -> None:
+    """Of a process of its own: what a half-made connection says, it says when Python ends."""
+    asked = ["--cylinder", "300", "80", "--scheduler", "tcp://127.0.0.1"]
+    command = [sys.executable, "-m", "deltaviz", "design", *asked]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 1
+    (line,) = done.stderr.splitlines()
+    assert "no Dask scheduler answers at tcp://127.0.0.1: missing port" in line

@@ -40,11 +40,13 @@ def cluster(address: str) -> Iterator[Mapper]:
     """On the workers of a Dask scheduler, which must have deltaviz, too. Raises NoScheduler."""
     try:
         from distributed import Client
+        from distributed.comm.addressing import resolve_address
     except ImportError as error:
         raise NoScheduler(
             "--scheduler needs Dask: install it with `pip install 'deltaviz[dask]'`"
         ) from error
     try:
+        resolve_address(address)  # a client of one that cannot be is no more to be closed
         client: Any = Client(address, timeout=CONNECT_S, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as error:
         raise NoScheduler(f"no Dask scheduler answers at {address}: {error}") from error
