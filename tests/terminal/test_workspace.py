@@ -127,7 +127,7 @@ def test_what_does_not_fit_says_by_how_much_and_where(capsys: pytest.CaptureFixt
     ("sides", "at"),
     [(("--cylinder", "405.83", "100"), "-360"), (("--box", "288", "288", "100"), "-360")],
 )
-@pytest.mark.parametrize("more", [-0.2, -0.05, 0.0, 0.05, 0.3, 1.0])
+@pytest.mark.parametrize("more", [-0.05, 0.05, 1.0])
 def test_near_the_limit_no_sentence_gainsays_another(
     capsys: pytest.CaptureFixture[str], sides: tuple[str, ...], at: str, more: float
 ) -> None:
