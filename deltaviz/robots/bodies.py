@@ -15,3 +15,14 @@ class Bodies:
     rod_diameter: float
     rod_spacing: float
     effector_thickness: float
+
+
+@dataclass(frozen=True, slots=True)
+class PlanarBodies:
+    """Of a five-bar whose parts all lie in one plane, mm. Base and platform are bars between
+    their joints; one without width is no more than a joint."""
+
+    base_thickness: float
+    upper_arm_width: float
+    forearm_width: float
+    platform_thickness: float

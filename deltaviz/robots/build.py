@@ -12,7 +12,7 @@ from deltaviz.mechanism import FiveBar, GeometryError, Mechanism, RotaryDelta
 from deltaviz.mechanism.masses import Masses
 from deltaviz.robots import robot as made
 from deltaviz.robots import schema
-from deltaviz.robots.bodies import Bodies
+from deltaviz.robots.bodies import Bodies, PlanarBodies
 from deltaviz.robots.closing import can_meet, shortest_forearm
 from deltaviz.robots.errors import Inconsistent
 from deltaviz.robots.joint_numbers import JointNumbers, check_fields, joint_numbers
@@ -39,7 +39,7 @@ def build(file: schema.RobotFile) -> made.Robot:
         limits=_limits(file.limits, joints),
         drive=_drive(file.drive, joints),
         homing=_homing(file.homing, joints),
-        bodies=_bodies(file.bodies) if isinstance(file, schema.RotaryDeltaFile) else None,
+        bodies=_bodies(file.bodies),
         masses=_masses(file.masses),
     )
     if has_tool_axis:
@@ -161,9 +161,11 @@ def _radians(
     return tuple(math.radians(value(joint)) for joint in joints)
 
 
-def _bodies(bodies: schema.Bodies | None) -> Bodies | None:
+def _bodies(bodies: schema.Bodies | schema.PlanarBodies | None) -> Bodies | PlanarBodies | None:
     if bodies is None:
         return None
+    if isinstance(bodies, schema.PlanarBodies):
+        return PlanarBodies(**bodies.model_dump())
     for thickness in ("upper_arm_diameter", "effector_thickness"):
         between = getattr(bodies, thickness) + bodies.rod_diameter
         if not bodies.rod_spacing > between:
@@ -173,13 +175,7 @@ def _bodies(bodies: schema.Bodies | None) -> Bodies | None:
                 f"must be greater than bodies.{thickness} + bodies.rod_diameter ({between:g}): "
                 "the rods pass on both sides",
             )
-    return Bodies(
-        base_thickness=bodies.base_thickness,
-        upper_arm_diameter=bodies.upper_arm_diameter,
-        rod_diameter=bodies.rod_diameter,
-        rod_spacing=bodies.rod_spacing,
-        effector_thickness=bodies.effector_thickness,
-    )
+    return Bodies(**bodies.model_dump())
 
 
 def _masses(masses: schema.Masses | None) -> Masses | None:

@@ -16,7 +16,7 @@ from deltaviz.mechanism.kernel import Kernel
 from deltaviz.mechanism.margin import Margin, MarginKind
 from deltaviz.mechanism.masses import Masses
 from deltaviz.mechanism.mechanism import Mechanism
-from deltaviz.robots.bodies import Bodies
+from deltaviz.robots.bodies import Bodies, PlanarBodies
 
 if TYPE_CHECKING:
     from deltaviz.robots.reach import Reach
@@ -129,7 +129,7 @@ class Robot:
     drive: Drive
     homing: Homing
     tool_axis: bool = False
-    bodies: Bodies | None = None
+    bodies: Bodies | PlanarBodies | None = None
     masses: Masses | None = None
 
     @property

@@ -280,6 +280,15 @@ class Bodies(Section):
     effector_thickness: Length
 
 
+class PlanarBodies(Section):
+    """As `Bodies`, of parts that all lie in one plane."""
+
+    base_thickness: Length
+    upper_arm_width: Length
+    forearm_width: Length
+    platform_thickness: Length
+
+
 class Masses(Section):
     """What the parts weigh, for torques."""
 
@@ -312,6 +321,7 @@ class FiveBarFile(Section):
     limits: Limits
     drive: Drive
     homing: Homing
+    bodies: PlanarBodies | None = None
     masses: Masses | None = None
 
 

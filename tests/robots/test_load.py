@@ -123,6 +123,13 @@ PLANAR_CHANGES = [
     ("x = [-100, 100]", "radius = 100", "workspace.radius", "known here: x, z"),
     ("z = [-240, -130]", "z = [10, 20]", "workspace", "at least one point"),
     ("invert = [false, false]", "invert = [1, 0]", "drive.invert", "true or false"),
+    ("forearm_width = 14", "forearm_width = 0", "bodies.forearm_width", "greater than 0"),
+    (
+        "forearm_width = 14",
+        "rod_diameter = 14",
+        "bodies.rod_diameter",
+        "known here: base_thickness",
+    ),
     ("switch_deg = [-50, -50]", "switch_deg = [-50, -30]", "homing.switch_deg", r"min_deg \(-45\)"),
     ("ready_deg = 20 ", "ready_deg = 88 ", "homing.ready_deg", "lower end of the workspace"),
     ("ready_deg = 20 ", "ready_deg = [0, 95] ", "homing.ready_deg", "arm 2 upper joint limit"),

@@ -1,4 +1,4 @@
-"""Distances between the parts of a rotary delta, each a capsule: a line with a radius.
+"""Distances between the parts of a robot, each a capsule: a line with a radius.
 
 A row of `capsules` is two ends and a radius; an end is what it is fixed to (`BASE`, `EFFECTOR`, or
 `ELBOW` + arm) and its place from there: from the base's centre, the effector's, or the elbow

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from enum import Flag, auto
 
-from deltaviz.mechanism import RotaryDelta
 from deltaviz.robots.robot import Robot
 
 
@@ -32,8 +31,6 @@ def not_considered(robot: Robot, limits: Limit) -> dict[Limit, str]:
     out: dict[Limit, str] = {}
     if Limit.BALL_JOINTS in limits and robot.joints.ball_joint_max is None:
         out[Limit.BALL_JOINTS] = "this kind of robot has none"
-    if Limit.COLLISIONS in limits and not isinstance(robot.mechanism, RotaryDelta):
-        out[Limit.COLLISIONS] = "they are not known of this kind of robot"
-    elif Limit.COLLISIONS in limits and robot.bodies is None:
+    if Limit.COLLISIONS in limits and robot.bodies is None:
         out[Limit.COLLISIONS] = "the robot file has no section [bodies]"
     return out

@@ -81,10 +81,12 @@ class Margins:
         return found
 
     def gaps(self, xyz: Array) -> tuple[Array, NDArray[np.intp]]:
-        """(n, 3) to the gap between the two parts that are nearest to touching, and the index of
-        its name, (n,) each; infinite where collisions do not count."""
+        """Tool tips (n, d), or (n, 3) for every robot, to the gap between the two parts that are
+        nearest to touching, and the index of its name, (n,) each; infinite where collisions do
+        not count."""
         if self.collisions is None or not len(xyz):
             return np.full(len(xyz), math.inf), np.zeros(len(xyz), np.intp)
+        xyz = xyz if xyz.shape[1] == 3 else self._flat(xyz)[0]
         gap, _, pair = self.collisions.bounds(xyz, np.zeros(len(xyz)), self.arms, self.rest)
         return gap, pair + len(self.off)
 

@@ -44,10 +44,10 @@ def nearest_parts(robot: Robot, limits: Limit = Limit.ALL) -> Nearest | None:
     gap, _ = with_gaps.gaps(points)
     points = points[np.argsort(gap)[:CLOSEST]]
     step = field.grid.cell
-    ways = np.array(list(itertools.product((-1.0, 0.0, 1.0), repeat=3)))
+    ways = np.array(list(itertools.product((-1.0, 0.0, 1.0), repeat=with_gaps.dimensions)))
     while step > LAST_STEP:
         tried = points[:, None] + step * ways
-        gap, _ = with_gaps.gaps(tried.reshape(-1, 3))
+        gap, _ = with_gaps.gaps(tried.reshape(-1, with_gaps.dimensions))
         legal = margins.least(tried) >= 0
         gap = np.where(legal, gap.reshape(legal.shape), np.inf)
         best = gap.argmin(axis=1)

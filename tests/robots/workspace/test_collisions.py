@@ -10,19 +10,19 @@ import pytest
 
 from deltaviz.mechanism.margin import MarginKind
 from deltaviz.robots import Robot, load_robot
+from deltaviz.robots.bodies import Bodies
 from deltaviz.robots.workspace import Limit, Margins
 from deltaviz.robots.workspace.cells import Cells, hull
 from deltaviz.robots.workspace.parts import nearest_parts
 from tests.robots.workspace import oracle
 from tests.robots.workspace.conftest import DELTAS
-
-Line = tuple[str, int, np.ndarray, np.ndarray, float]  # name, arm, both ends, radius
+from tests.robots.workspace.lines import Line, gap
 
 
 def parts(robot: Robot, tip: np.ndarray) -> list[Line]:
     """The robot's parts in one pose, from its lengths and its angles alone."""
     mechanism, bodies, out = robot.mechanism, robot.bodies, []
-    assert bodies is not None
+    assert isinstance(bodies, Bodies)
     centre = tip - np.array(robot.tool_offset)
     for i, arm in enumerate(oracle.arms(robot, tip)):
         azimuth = np.radians(mechanism.azimuths_deg[i])  # type: ignore[attr-defined]
@@ -47,23 +47,6 @@ def joined(one: Line, other: Line) -> bool:
     names = {one[0], other[0]}
     same = one[0] == other[0] and one[0] in ("base", "effector")
     return same or (names == {"base", "upper arm"} and one[1] == other[1])
-
-
-def from_line(point: np.ndarray, a: np.ndarray, b: np.ndarray) -> float:
-    share = np.clip((point - a) @ (b - a) / ((b - a) @ (b - a)), 0, 1)
-    return float(np.linalg.norm(a + share * (b - a) - point))
-
-
-def gap(one: Line, other: Line) -> float:
-    """Two lines are nearest where they cross, seen along both, or at one of the four ends."""
-    (_, _, a, b, first), (_, _, c, d, second) = one, other
-    found = [from_line(a, c, d), from_line(b, c, d), from_line(c, a, b), from_line(d, a, b)]
-    across = np.cross(b - a, d - c)
-    if np.linalg.norm(across) > 1e-9:
-        s, t, _ = np.linalg.solve(np.stack((b - a, c - d, across), axis=-1), c - a)
-        if 0 <= s <= 1 and 0 <= t <= 1:
-            found.append(float(abs((c - a) @ across) / np.linalg.norm(across)))
-    return min(found) - first - second
 
 
 @pytest.mark.parametrize("name", [*DELTAS, "uneven"])
@@ -114,7 +97,7 @@ def test_bounds_of_gaps_hold_in_balls(uneven: Robot) -> None:
             assert np.median((upper - lower)[known]) < 8 * radius
 
 
-@pytest.mark.parametrize("name", DELTAS)
+@pytest.mark.parametrize("name", [*DELTAS, "fivebar"])
 def test_no_parts_touch_within_a_presets_zone(name: str) -> None:
     """Proved: cells of the zone are halved until each is out of reach or free of collisions."""
     robot = load_robot(name)
@@ -129,7 +112,10 @@ def test_no_parts_touch_within_a_presets_zone(name: str) -> None:
         _, outside = cells.judge(others)
         cells = cells[~outside]
         r = np.full(len(cells), cells.radius)
-        lower, _, _ = collisions.bounds(cells.centres, r, margins.arms, margins.rest)
+        centres = cells.centres
+        if margins.dimensions == 2:
+            centres = np.insert(centres, 1, 0.0, axis=1)
+        lower, _, _ = collisions.bounds(centres, r, margins.arms, margins.rest)
         cells = cells[lower < 0]
         if not len(cells):
             break
