@@ -75,6 +75,7 @@ def test_json_holds_the_same_as_the_text(capsys: pytest.CaptureFixture[str]) -> 
     assert data["largest_cylinder"] is None
     assert data["largest_box"]["size_mm"][0] > 160
     assert data["quality"]["condition"]["worst"] > data["quality"]["condition"]["best"]
+    assert "ball_joint_deg" not in data["quality"]
     assert len(data["torque"]["holding_nm"]) == 2
 
 

@@ -172,7 +172,10 @@ def limit_name(limit: Limit) -> str:
 
 def _spreads(quality: Quality, points: Array) -> dict[str, Spread]:
     out: dict[str, Spread] = {}
+    planar = points.shape[-1] == 2
     for name in quality.measures():
+        if planar and name == "ball_joint_deg":
+            continue  # it has none
         values = np.asarray(getattr(quality, name))
         order = np.argsort(values)
         order = order[: np.isfinite(values).sum()]  # NaN stands last
