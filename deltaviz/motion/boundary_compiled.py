@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from deltaviz.motion.compiled import compiled
+from deltaviz.mechanism.compiled import compiled
 from deltaviz.motion.followed import Array
 
 TOLERANCE = 1e-7  # units of margin: rounding

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from deltaviz.motion.compiled import compiled
+from deltaviz.mechanism.compiled import compiled
 from deltaviz.motion.followed import Array
 
 BRAKE_SHARE = 0.98  # of the acceleration limit: the rest is for rounding to the board's numbers

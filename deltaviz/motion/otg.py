@@ -13,7 +13,7 @@ from typing import Any, Self
 import numpy as np
 import ruckig
 
-from deltaviz.motion.compiled import compiled
+from deltaviz.mechanism.compiled import compiled
 from deltaviz.motion.followed import Array
 
 _otg: Any = ruckig  # it has no types

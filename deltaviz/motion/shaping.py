@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from deltaviz.motion.compiled import compiled
+from deltaviz.mechanism.compiled import compiled
 from deltaviz.motion.followed import Array
 from deltaviz.motion.otg import Generator, Request
 from deltaviz.motion.space import CartesianSpace, Group, JointSpace, Space
