@@ -45,7 +45,7 @@ const watch = (action) => void notices.watch(action);
 
 const connection = new Connection({ opened, closed, received });
 const hands = new Hands({ connection, store });
-const stopper = new Stopper({ connection, hands, notices });
+const stopper = new Stopper({ connection, hands, notices, store });
 const choice = new JogChoice();
 const jogging = new Jogging({ store, hands, choice, notices });
 const views = new Views(() => {
