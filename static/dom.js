@@ -49,8 +49,9 @@ export function onPress(button, action) {
     pressed = true;
     action();
   });
-  button.addEventListener("click", () => {
-    if (!pressed) action();
+  button.addEventListener("click", (event) => {
+    // A press that was let go elsewhere is followed by no click: the next may be a key's.
+    if (!pressed || event.detail === 0) action();
     pressed = false;
   });
 }

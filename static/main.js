@@ -45,7 +45,7 @@ const watch = (action) => void notices.watch(action);
 
 const connection = new Connection({ opened, closed, received });
 const hands = new Hands({ connection, store });
-const stopper = new Stopper({ connection, hands, notices });
+const stopper = new Stopper({ connection, hands, notices, store });
 const choice = new JogChoice();
 const jogging = new Jogging({ store, hands, choice, notices });
 const views = new Views(() => {
@@ -60,7 +60,7 @@ const sceneView = new SceneView({ choose: (item, value) => connection.send({ typ
 new Status({ store, watch });
 new Readouts(store);
 new JogPad({ store, hands, choice, press: (source, wish) => jogging.press(source, wish) });
-new Pose({ store, watch });
+const pose = new Pose({ store, watch });
 new MessageBox({
   store,
   notices,
@@ -77,11 +77,16 @@ addMoveTo({ store, watch });
 addRobotChoice({ store, watch });
 addLinkFacts({ store });
 
-onPress(byId("stop", HTMLButtonElement), () => stopper.stop("stop"));
-onPress(byId("estop", HTMLButtonElement), () => stopper.stop("estop"));
+/** @param {import("./stop.js").StopKind} kind */
+const stop = (kind) => {
+  stopper.stop(kind);
+  pose.letGo();
+};
+onPress(byId("stop", HTMLButtonElement), () => stop("stop"));
+onPress(byId("estop", HTMLButtonElement), () => stop("estop"));
 
 const keys = {
-  stop: () => stopper.stop("stop"),
+  stop: () => stop("stop"),
   shown: () => views.jogShown,
   jog: (/** @type {KeyboardEvent} */ event) => jogging.key(event, keySource(event)),
   release: (/** @type {string} */ source) => hands.release(source),

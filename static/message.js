@@ -31,23 +31,22 @@ const NEXT = {
   estop: "E-stop: the drivers are off, the homing is lost. Reset when it is safe.",
 };
 
+/** @type {ReadonlySet<Mode>} where nothing but the speed is missing when that is 0 */
+const SLOWED = new Set(["idle", "jogging", "moving", "running"]);
+
 /**
  * @param {Picture & {notice: Notice | null}} picture
  * @returns {Told}
  */
 export function chooseMessage({ state, connected, stale, notice }) {
+  const badNews = notice?.tone === "bad" ? notice.text : null;
   if (!connected) {
-    return tell(
-      "bad",
-      notice?.tone === "bad"
-        ? notice.text
-        : "No connection to the server: the numbers are old. Trying again.",
-    );
+    return tell("bad", badNews ?? "No connection to the server: the numbers are old. Trying again.");
   }
   if (state === null) return tell(notice?.tone ?? "quiet", notice?.text ?? "Waiting for the robot.");
-  if (stale) return tell("bad", "No news from the robot: the numbers are old.");
+  if (stale) return tell("bad", badNews ?? "No news from the robot: the numbers are old.");
   const step = STEPS[state.mode] ?? null;
-  if (notice?.tone === "bad") return tell("bad", notice.text, step);
+  if (badNews !== null) return tell("bad", badNews, step);
   if (state.fault !== null) return tell("bad", `Fault: ${state.fault}`, step);
   if (state.mode === "estop") return tell("bad", estopSentence(state), step);
   if (notice !== null) return tell(notice.tone, notice.text, step);
@@ -56,11 +55,14 @@ export function chooseMessage({ state, connected, stale, notice }) {
   if (state.control.holder === "another") {
     return tell("warn", "Another has control. You watch, and may stop at any time.");
   }
-  const next = [state.link.note, state.next_step ?? NEXT[state.mode]].filter(Boolean).join(" ");
+  const waits = state.override === 0 && SLOWED.has(state.mode);
+  const tone = waits ? "warn" : "quiet";
+  const todo = waits ? "The speed is 0 %: raise it to move." : (state.next_step ?? NEXT[state.mode]);
+  const next = [state.link.note, todo].filter(Boolean).join(" ");
   if (state.stop_reason !== null && state.mode !== "jogging" && state.mode !== "moving") {
-    return tell("quiet", `Stopped: ${withPeriod(state.stop_reason)} ${next}`, step);
+    return tell(tone, `Stopped: ${withPeriod(state.stop_reason)} ${next}`, step);
   }
-  return tell("quiet", next, step);
+  return tell(tone, next, step);
 }
 
 /**

@@ -1,6 +1,7 @@
 /**
  * Sliders for the angles and the position, where viser's own panel has no room. A slider shows
- * the command, except while it is held; letting go moves the robot there.
+ * the command, except while it is held; letting go moves the robot there, unless there was a
+ * stop since it was taken hold of.
  *
  * @import {Store} from "./store.js"
  * @import {Robot, Range} from "./robot.js"
@@ -16,7 +17,7 @@ import { Echo } from "./slider.js";
 /** Arrow keys change a slider many times; one move follows when they pause. */
 const KEYS_MS = 150;
 
-/** @typedef {{input: HTMLInputElement, output: HTMLElement, held: boolean, echo: Echo}} Slider */
+/** @typedef {{input: HTMLInputElement, output: HTMLElement, held: boolean, void: boolean, echo: Echo}} Slider */
 
 export class Pose {
   #box = byId("sliders", HTMLElement);
@@ -28,6 +29,8 @@ export class Pose {
   #groups = [];
   /** @type {number | undefined} */
   #waiting;
+  /** @type {string | null} */
+  #stopReason = null;
 
   /** @param {{store: Store, watch: (action: Promise<unknown>) => void}} parts */
   constructor({ store, watch }) {
@@ -36,11 +39,23 @@ export class Pose {
     store.addView(() => this.#draw());
   }
 
+  /** What is held or about to be sent moves nothing any more; that takes a fresh press. */
+  letGo() {
+    clearTimeout(this.#waiting);
+    for (const slider of this.#groups.flatMap(({ sliders }) => sliders)) {
+      if (slider?.held) Object.assign(slider, { held: false, void: true });
+    }
+  }
+
   #draw() {
     const { state, robot } = this.#store;
     if (robot !== this.#built) this.#build(robot);
     const moving = state?.mode === "moving" || state?.mode === "jogging";
     const barred = !moving && obstacleToMovingThere(this.#store) !== null;
+    const stopReason = state?.stop_reason ?? null;
+    const stopped = stopReason !== null && stopReason !== this.#stopReason;
+    this.#stopReason = stopReason;
+    if (barred || stopped) this.letGo();
     for (const { field, sliders } of this.#groups) {
       const command = state?.[`command_${field}`];
       const reported = state?.[field];
@@ -81,7 +96,7 @@ export class Pose {
       });
       const output = make("span", { class: "numbers" }, "–");
       this.#box.append(make("label", { class: "row" }, make("span", { class: "label" }, name), input, output));
-      return { input, output, held: false, echo: new Echo() };
+      return { input, output, held: false, void: false, echo: new Echo() };
     });
     this.#groups.push({ field, sliders });
     sliders.forEach((slider, i) => slider && this.#listen(slider, i, field, sliders));
@@ -94,11 +109,16 @@ export class Pose {
    * @param {(Slider | null)[]} sliders
    */
   #listen(slider, index, field, sliders) {
+    slider.input.addEventListener("pointerdown", () => (slider.void = false));
+    slider.input.addEventListener("keydown", ({ key }) => {
+      if (key !== "Escape") slider.void = false;
+    });
     slider.input.addEventListener("input", () => {
-      slider.held = true;
+      slider.held = !slider.void;
       this.#store.changed();
     });
     slider.input.addEventListener("change", () => {
+      if (slider.void) return;
       slider.held = false;
       slider.echo.touch();
       clearTimeout(this.#waiting);

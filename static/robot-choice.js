@@ -12,6 +12,8 @@ export function addRobotChoice({ store, watch }) {
   /** @type {HTMLSelectElement[]} */
   const selects = [...document.querySelectorAll("select")].filter((s) => "robot" in s.dataset);
   let listed = "";
+  /** @type {string | undefined} */
+  let shown;
   for (const select of selects) {
     select.addEventListener("change", () => {
       const robot = select.value;
@@ -28,9 +30,11 @@ export function addRobotChoice({ store, watch }) {
       if (listed !== names.join()) {
         select.replaceChildren(...names.map((name) => make("option", { value: name }, name)));
       }
-      if (robot && document.activeElement !== select) select.value = robot;
+      // Who looks through the list is not disturbed, unless what is driven changes.
+      if (robot && (robot !== shown || document.activeElement !== select)) select.value = robot;
       select.disabled = store.stale || !atRest || store.state?.control.holder === "another";
     }
     listed = names.join();
+    shown = robot;
   });
 }

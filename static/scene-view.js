@@ -140,12 +140,12 @@ function drawSlider(item, choose) {
   });
   return {
     element: make("label", { class: "row" }, make("span", { class: "label" }, item.label), input, output),
-    update: ({ value, low, high, step }) => {
-      if (!echo.over) return;
-      Object.assign(input, { min: String(low), max: String(high), step: String(step) });
-      input.value = String(value);
-      setText(output, input.value);
-    },
+    update: ({ value, low, high, step }) =>
+      echo.whenOver(() => {
+        Object.assign(input, { min: String(low), max: String(high), step: String(step) });
+        input.value = String(value);
+        setText(output, input.value);
+      }),
   };
 }
 

@@ -8,6 +8,8 @@ const ECHO_MS = 600;
 
 export class Echo {
   #touched = -Infinity;
+  /** @type {number | undefined} */
+  #waiting;
 
   /** A person has chosen a value. */
   touch() {
@@ -17,6 +19,17 @@ export class Echo {
   /** Whether what the server tells is news again. */
   get over() {
     return performance.now() - this.#touched > ECHO_MS;
+  }
+
+  /**
+   * Shows what the server told as soon as it is news again: it may not be told a second time.
+   *
+   * @param {() => void} show only the last one given is called
+   */
+  whenOver(show) {
+    clearTimeout(this.#waiting);
+    if (this.over) show();
+    else this.#waiting = setTimeout(() => this.whenOver(show), ECHO_MS);
   }
 }
 

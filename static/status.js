@@ -63,7 +63,7 @@ export class Status {
 
   #draw() {
     const { state, connected, stale } = this.#store;
-    this.#drawMode(state, connected);
+    this.#drawMode(state, connected, stale);
     this.#control.disabled = state === null || stale;
     if (state === null) return;
     this.#drawLink(state.link, stale);
@@ -76,11 +76,12 @@ export class Status {
   /**
    * @param {RobotState | null} state
    * @param {boolean} connected
+   * @param {boolean} stale
    */
-  #drawMode(state, connected) {
+  #drawMode(state, connected, stale) {
     const [text, tone] = !connected
       ? ["Server lost", "bad"]
-      : state === null ? ["Connecting", "quiet"] : MODES[state.mode];
+      : state === null ? ["Connecting", "quiet"] : stale ? ["No news", "bad"] : MODES[state.mode];
     setText(/** @type {Element} */ (this.#mode.lastElementChild), text);
     this.#mode.dataset["tone"] = tone;
   }

@@ -5,6 +5,7 @@
  * @import {Connection} from "./connection.js"
  * @import {Notices} from "./notices.js"
  * @import {Hands} from "./hands.js"
+ * @import {Store} from "./store.js"
  */
 
 /** @typedef {"stop" | "estop"} StopKind */
@@ -15,12 +16,14 @@ export class Stopper {
   #connection;
   #hands;
   #notices;
+  #store;
 
-  /** @param {{connection: Connection, hands: Hands, notices: Notices}} parts */
-  constructor({ connection, hands, notices }) {
+  /** @param {{connection: Connection, hands: Hands, notices: Notices, store: Store}} parts */
+  constructor({ connection, hands, notices, store }) {
     this.#connection = connection;
     this.#hands = hands;
     this.#notices = notices;
+    this.#store = store;
   }
 
   /** @param {StopKind} kind */
@@ -44,9 +47,13 @@ export class Stopper {
     const arrived = await posted.then((response) => response.ok, () => false);
     if (arrived) {
       this.#notices.clear();
-    } else if (!sent || !this.#connection.open) {
-      const name = kind === "stop" ? "Stop" : "E-stop";
-      this.#notices.say("bad", `${name} did not reach the server. Use the hardware emergency stop.`, Infinity);
+      return;
     }
+    const lost = !sent || !this.#connection.open;
+    // A socket may look open long after the network is gone.
+    if (!lost && !this.#store.stale) return;
+    const name = kind === "stop" ? "Stop" : "E-stop";
+    const fate = lost ? "did not reach the server" : "was not answered";
+    this.#notices.say("bad", `${name} ${fate}. Use the hardware emergency stop.`, Infinity);
   }
 }

@@ -138,15 +138,15 @@ def _readout(robot: Robot, snapshot: Snapshot | None) -> str:
     """The reported pose; for steppers it is counted, not measured."""
     rows: list[tuple[str, str]] = []
     if snapshot is not None and snapshot.xyz is not None and snapshot.theta is not None:
-        rows += [(f"{a} mm", f"{v:.1f}") for a, v in zip(robot.axes, snapshot.xyz, strict=False)]
+        rows += [(f"{a} mm", f"{v:z.1f}") for a, v in zip(robot.axes, snapshot.xyz, strict=False)]
         angles = zip(robot.joint_names, snapshot.theta, strict=False)
-        rows += [(f"{name} °", f"{math.degrees(v):.1f}") for name, v in angles]
+        rows += [(f"{name} °", f"{math.degrees(v):z.1f}") for name, v in angles]
     half = (len(rows) + 1) // 2
     cells = "".join(
         "<tr>" + "".join(f"<td>{name}</td>{_NUMBER}{value}</td>" for name, value in pair) + "</tr>"
         for pair in zip_longest(rows[:half], rows[half:], fillvalue=("", ""))
     )
-    body = f"<table style='width:100%'>{cells}</table>" if rows else "Not known."
+    body = f"<table style='width:100%'>{cells}</table>" if rows else "<div>Not known.</div>"
     return (
         "<div style='font-size:12px;padding:4px 8px;font-variant-numeric:tabular-nums'>"
         f"<b>Reported</b> (counted, not measured){body}</div>"

@@ -12,6 +12,7 @@ from fastapi import APIRouter, Depends, HTTPException, Request
 
 from deltaviz.machine import intent
 from deltaviz.machine.port import MachinePort
+from deltaviz.robots import preset_names
 from deltaviz.web import models
 from deltaviz.web.desk import REFUSALS, ask, robot_angles, robot_point
 from deltaviz.web.kinematics import add_kinematics
@@ -67,6 +68,9 @@ def _add_stops(router: APIRouter, machine: MachinePort) -> None:
 
 
 def _add_looks(router: APIRouter, machine: MachinePort) -> None:
+    # A robot from a file can be chosen again after another was.
+    choices = {*preset_names(), machine.robot.name}
+
     @router.get("/state")
     async def state(client: Client) -> dict[str, Any]:
         """The machine now. Lengths in mm, angles in degrees; null where unknown."""
@@ -76,7 +80,7 @@ def _add_looks(router: APIRouter, machine: MachinePort) -> None:
     @router.get("/robot")
     async def robot() -> dict[str, Any]:
         """The robot: geometry, limits, and the presets there are."""
-        return robot_json(machine.robot)
+        return robot_json(machine.robot, choices | {machine.robot.name})
 
     @router.get("/ports")
     def ports() -> list[models.Port]:

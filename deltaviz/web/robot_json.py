@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict, is_dataclass
 from typing import Any
 
 from deltaviz.mechanism import Mechanism
-from deltaviz.robots import Robot, preset_names
+from deltaviz.robots import Robot
 from deltaviz.robots.coordinates import in_space
 
 
-def robot_json(robot: Robot) -> dict[str, Any]:
+def robot_json(robot: Robot, choices: Iterable[str]) -> dict[str, Any]:
     """Lengths in mm, angles in degrees, one entry per joint; null where there is no such limit.
+
+    `choices` are the ids of the robots that may be driven.
 
     `axes` are the coordinates that it has, of X, Y, Z; with a `tool_axis` the last joint turns
     the tool.
@@ -45,7 +47,7 @@ def robot_json(robot: Robot) -> dict[str, Any]:
                 "jerk": cartesian.jerk,
             },
         },
-        "presets": sorted({*preset_names(), robot.name}),
+        "presets": sorted(choices),
     }
 
 

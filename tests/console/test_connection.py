@@ -31,6 +31,7 @@ def test_a_silent_server_is_told(page: Page, machine: Any) -> None:
     machine.silent = True
     expect(page.get_by_role("status")).to_contain_text("No news from the robot")
     assert page.locator("html").get_attribute("data-stale") is not None
+    assert page.locator("#mode").inner_text() == "No news"  # and not what was true once
 
 
 def test_a_reconnect_resumes_nothing(
@@ -111,6 +112,26 @@ def test_the_next_step_is_a_button_on_the_pendant(
     page = open_page(390, 844)
     page.locator("#message-step").click()
     wait_until(lambda: [path for path, _ in machine.posts] == ["enable"])
+
+
+def test_a_robot_chosen_by_the_keyboard_is_shown(
+    page: Page, machine: Any, wait_until: Callable[..., Any]
+) -> None:
+    select = page.locator("header select")
+    select.focus()
+    page.keyboard.press("ArrowDown")  # it stays in focus
+    wait_until(lambda: machine.posted("robot") == [{"robot": "trossen"}])
+    machine.robot["name"] = "trossen"
+    machine.set(robot="trossen")
+    expect(select).to_have_value("trossen")
+
+
+@pytest.mark.parametrize("mode", ["idle", "jogging", "moving"])
+def test_it_is_told_that_the_speed_is_what_keeps_the_robot(
+    page: Page, machine: Any, mode: str
+) -> None:
+    machine.set(mode=mode, override=0.0)
+    expect(page.get_by_role("status")).to_contain_text("The speed is 0 %: raise it to move.")
 
 
 def test_robot_and_link_are_chosen(

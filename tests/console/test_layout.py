@@ -137,6 +137,49 @@ def test_nothing_jumps_when_the_message_grows(open_page: Callable[..., Page], ma
     assert page.locator("#pad").bounding_box() == before
 
 
+def test_no_column_jumps_when_the_pose_is_not_known(
+    open_page: Callable[..., Page], machine: Any
+) -> None:
+    page = open_page(1280, 800)
+    heads = page.locator("thead th")
+    before = [head.bounding_box() for head in heads.all()]
+    page.locator("#readouts").get_by_text("−301.02").wait_for()
+    unknown = ("xyz_mm", "theta_deg", "command_xyz_mm", "command_theta_deg")
+    machine.set(**dict.fromkeys(unknown), mode="unhomed", homed=False)
+    page.locator("#readouts").get_by_text("−301.02").wait_for(state="detached")
+    assert [head.bounding_box() for head in heads.all()] == before
+
+
+def test_a_long_name_leaves_the_header_in_one_line(
+    open_page: Callable[..., Page], machine: Any
+) -> None:
+    name = "a-robot-with-the-longest-name-that-a-file-of-a-robot-may-give"
+    machine.robot["name"] = name
+    machine.set(robot=name)
+    page = open_page(1280, 800)
+    header = page.locator("header").bounding_box()
+    assert header is not None
+    assert header["height"] < 56
+
+
+def test_the_open_view_is_marked(open_page: Callable[..., Page]) -> None:
+    page = open_page(1280, 800)
+    view, setup = page.locator("#view-toggle"), page.locator("#setup-toggle")
+    view.click()
+    page.mouse.move(600, 400)
+    colours = [e.evaluate("e => getComputedStyle(e).backgroundColor") for e in (view, setup)]
+    assert colours[0] != colours[1]
+
+
+def test_buttons_of_a_low_page_are_of_one_height(open_page: Callable[..., Page]) -> None:
+    page = open_page(844, 390, has_touch=True, is_mobile=True)
+    frames = page.locator("#frames button").first.bounding_box()
+    steps = page.locator("#steps button").first.bounding_box()
+    assert frames is not None
+    assert steps is not None
+    assert abs(frames["height"] - steps["height"]) < 4
+
+
 @pytest.mark.parametrize("size", [(390, 844), (390, 664)])
 def test_the_pendant_leaves_room_for_the_scene(
     open_page: Callable[..., Page], size: tuple[int, int]

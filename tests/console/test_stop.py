@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
-from playwright.sync_api import Page
+from playwright.sync_api import Page, expect
 
 pytestmark = pytest.mark.browser
 
@@ -40,6 +40,30 @@ def test_stop_by_the_keyboard(page: Page, machine: Any, wait_until: Callable[...
     page.locator("#stop").focus()
     page.keyboard.press("Enter")
     wait_until(lambda: stopped(machine))
+
+
+def test_a_press_let_go_beside_the_button_swallows_no_later_stop(
+    page: Page, machine: Any, wait_until: Callable[..., Any]
+) -> None:
+    page.locator("#stop").hover()
+    page.mouse.down()
+    page.mouse.move(1100, 500)
+    page.mouse.up()
+    wait_until(lambda: stopped(machine))
+    machine.forget()
+    page.locator("#stop").focus()
+    page.keyboard.press("Enter")
+    wait_until(lambda: stopped(machine))
+
+
+def test_a_stop_that_nobody_answers_is_told_though_the_socket_looks_open(
+    page: Page, machine: Any
+) -> None:
+    machine.silent = True
+    page.get_by_text("No news from the robot").wait_for()
+    page.route("**/api/stop", lambda route: route.abort())
+    page.keyboard.press("Escape")
+    expect(page.get_by_role("status")).to_contain_text("Use the hardware emergency stop.")
 
 
 @pytest.mark.parametrize(

@@ -171,7 +171,19 @@ def test_what_is_not_a_point_is_none(text: str) -> None:
     assert parsed(text) is None
 
 
-@pytest.mark.parametrize("text", ["1 -2.5 -300", " 1, -2.5, -300", "1;-2.5;-3e2", "1,-2.5,-300 "])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "1 -2.5 -300",
+        " 1, -2.5, -300",
+        "1;-2.5;-3e2",
+        "1,-2.5,-300 ",
+        "1, -2.5,-300",
+        "1 -2,5 -300",
+        "1,0; -2,5; -300,0",
+        "1 \u22122.5 \u2212300",
+    ],
+)
 def test_a_point_is_three_numbers(text: str) -> None:
     assert parsed(text) == (1.0, -2.5, -300.0)
 

@@ -183,6 +183,15 @@ def test_an_unknown_pose_is_shown_as_a_shade(stand: Any) -> None:
     stand.eventually(lambda: beam.opacity is None)
 
 
+def test_the_panel_tells_the_pose_as_people_write_it(stand: Any) -> None:
+    readout = stand.scene._panel._readout
+    stand.machine.be_at((-0.004, -0.04, -330.0))
+    stand.eventually(lambda: "-330.0" in readout.content)
+    assert "-0.0<" not in readout.content  # nothing is less than nothing
+    stand.machine.snapshot = dataclasses.replace(stand.machine.snapshot, xyz=None, theta=None)
+    stand.eventually(lambda: ")<div>Not known.</div>" in readout.content)
+
+
 def test_a_robot_that_never_told_its_pose_is_whole(own_stand: Any, other_robot: Robot) -> None:
     """At its ready pose: arms, rods and effector hang together."""
     own_stand.machine.snapshot = dataclasses.replace(

@@ -4,14 +4,20 @@ from __future__ import annotations
 
 import json
 import math
+from pathlib import Path
 from typing import Any
 
 import pytest
+from fastapi import FastAPI
 from fastapi.testclient import TestClient
 
 from deltaviz.machine import intent
 from deltaviz.machine.intent import RefusalKind, Refused
+from deltaviz.robots import Robot, load_robot
+from deltaviz.web.api import make_api
 from deltaviz.web.session import HTTP_CLIENT
+
+TOOL_AXIS = Path(__file__).parents[2] / "docs" / "examples" / "stm32-tool.toml"
 
 RIGHT = math.radians(90)
 TOLD: list[tuple[str, dict[str, Any] | None, int, Any]] = [
@@ -246,6 +252,18 @@ def test_the_robot_is_described_for_people_and_programs(client: TestClient, robo
     assert told["limits"]["cartesian"]["velocity"] == robot.limits.cartesian.velocity
     assert told["workspace"]["z"] == list(robot.zone.z)
     assert "stm32" in told["presets"]
+
+
+def test_a_robot_from_a_file_can_be_chosen_again(machine: Any, robot: Robot) -> None:
+    app = FastAPI()
+    machine = type(machine)(load_robot(TOOL_AXIS))
+    name = machine.robot.name
+    app.include_router(make_api(machine))
+    with TestClient(app) as client:
+        machine.robot = robot  # another was chosen
+        told = client.get("/api/robot").json()
+    assert told["name"] == "stm32"
+    assert name in told["presets"]
 
 
 def test_the_links_are_listed_by_id_and_without_their_urls(client: TestClient) -> None:

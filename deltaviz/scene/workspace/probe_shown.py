@@ -23,6 +23,7 @@ TOPIC = "probe"
 CROSS, LABEL = "/reach/probe/cross", "/reach/probe/label"
 FARTHEST = 1e4  # mm
 HINT = "Click what is drawn of the workspace, or type X Y Z in mm."
+WRONG = f"Three numbers are needed, X Y Z in mm, none beyond {FARTHEST:.0f}."
 
 Mark = tuple[viser.LineSegmentsHandle, viser.LabelHandle]
 
@@ -121,14 +122,14 @@ class ProbeShown:
             return
         x, y, z = millimetres(hit).tolist()
         point = (x, 0.0 if is_planar(self._robot) else y, z)
-        self._place.value = " ".join(f"{value:.1f}" for value in point)
+        self._place.value = " ".join(f"{value:z.1f}" for value in point)
         self._probe(point)
 
     def _typed(self, text: str) -> None:
         point = parsed(text)
         if point is None:
             self._forget()
-            self._readout.show("Three numbers are needed, X Y Z in mm." if text.strip() else HINT)
+            self._readout.show(WRONG if text.strip() else HINT)
         elif is_planar(self._robot) and point[1] != 0.0:
             self._forget()
             self._readout.show("Y must be 0, as this robot moves in a plane.")
@@ -170,9 +171,15 @@ class ProbeShown:
 
 
 def parsed(text: str) -> Point | None:
-    """Three finite numbers that spaces, commas or semicolons stand between; else None."""
+    """Three finite numbers that spaces, commas or semicolons stand between; else None.
+
+    Commas are decimal where something else stands between all three.
+    """
+    parts = re.split(r"\s*;\s*|,?\s+", text.strip())
+    if len(parts) != 3:
+        parts = re.split(r"[\s,;]+", text.strip())
     try:
-        values = [float(part) for part in re.split(r"[\s,;]+", text.strip())]
+        values = [float(part.replace("\u2212", "-").replace(",", ".")) for part in parts]
     except ValueError:
         return None
     if len(values) != 3 or not all(abs(value) <= FARTHEST for value in values):

@@ -82,7 +82,7 @@ def _begun(text: str) -> str:
 
 def told(probed: Probed) -> list[Row]:
     """In words, for a panel."""
-    rows = [Row("Tip", "  ".join(f"{a} {v:.1f}" for a, v in zip("XYZ", probed.xyz, strict=True)))]
+    rows = [Row("Tip", "  ".join(f"{a} {v:z.1f}" for a, v in zip("XYZ", probed.xyz, strict=True)))]
     if probed.theta_deg is not None:
         names = (f"θ{arm + 1} {angle:.2f}°" for arm, angle in enumerate(probed.theta_deg))
         rows.append(Row("Angles", "  ".join(names)))
