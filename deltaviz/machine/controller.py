@@ -95,12 +95,11 @@ class Controller(Core):
     def _move(self, intent: MotionIntent, now: float) -> i.Answer:
         """Begin, or go over to, what a motion intent asks for."""
         event = event_of(intent)
+        fresh = self._is_fresh(intent, now)  # counts what is refused below, too: it is one pull
         refused = self._refusal(intent.client, event) or self._held_refusal(intent)
         if refused is not None:
             return refused
-        if isinstance(intent, i.FollowPoint | i.FollowAngles) and not self._presses.admits_value(
-            intent.client, now
-        ):
+        if not fresh:
             return i.Refused(i.RefusalKind.MODE, "The robot was stopped; let go, then pull again.")
         activity = activity_for(intent, self.robot, self._pose(), self._activity)
         if isinstance(intent, i.JogStart | i.DragStart):
@@ -109,7 +108,7 @@ class Controller(Core):
                 return i.Refused(i.RefusalKind.MODE, late)
         not_ready = self._open_drive(now)
         if not_ready is not None:
-            self._presses.stopped(now)
+            self._break_off(not_ready, now)
             return i.Refused(i.RefusalKind.MODE, not_ready)
         self._control.take(intent.client)
         self._activity = activity
@@ -117,6 +116,19 @@ class Controller(Core):
         self._stop_reason = self._note = None
         self._enter(event)
         return ACCEPTED
+
+    def _is_fresh(self, intent: MotionIntent, now: float) -> bool:
+        """Whether no stop came since the pull began that this belongs to."""
+        pulled = isinstance(intent, i.FollowPoint | i.FollowAngles)
+        return not pulled or self._presses.admits_value(intent.client, now)
+
+    def _break_off(self, reason: str, now: float) -> None:
+        """A press that begins nothing has still ended the one before: what that one held has
+        nobody to keep it alive or to let it go any more, so it stops."""
+        if self._activity is not None and self._activity.held:
+            self.stop(reason, now)
+        else:
+            self._presses.stopped(now)
 
     def _held_refusal(self, intent: MotionIntent) -> i.Refused | None:
         same = (self._presses.jog.live and isinstance(intent, i.JogStart)) or (

@@ -11,8 +11,10 @@ import pytest
 
 from deltaviz.link import messages as m
 from deltaviz.link.board import SimulatedBoard
+from deltaviz.link.timing import STALE
 from deltaviz.machine import intent as i
 from deltaviz.machine.core import Core
+from deltaviz.machine.fresh_press import PAUSE
 from deltaviz.machine.jog_lease import LEASE, JogLease
 from deltaviz.machine.mode import Mode
 from deltaviz.machine.presses import Presses
@@ -283,6 +285,60 @@ def test_a_slider_pulled_through_a_stop_does_not_resume(bench: Any) -> None:
     assert bench.distance_moved(rested) == 0
     bench.run(0.5)
     assert bench.do(i.FollowAngles(ME, (target, 0.0, 0.0))) == ACCEPTED
+
+
+def test_a_slider_pulled_through_a_long_stop_does_not_resume(bench: Any) -> None:
+    """What is refused while the robot still brakes belongs to the same pull."""
+    target = 0.0
+
+    def pull() -> None:
+        nonlocal target
+        target += 0.001
+        bench.do(i.FollowAngles(ME, (target, 0.0, 0.0)))
+
+    bench.run(0.3, each=pull)
+    bench.do(i.Stop(YOU, "Stop pressed"))
+    bench.cut = True
+    bench.run(PAUSE + 0.1, each=pull)
+    assert bench.mode is Mode.STOPPING
+    bench.cut = False
+    bench.run(0.1, each=pull)
+    rested = bench.now
+    bench.run(0.3, each=pull)
+    assert bench.mode is Mode.IDLE
+    assert bench.distance_moved(rested) == 0
+
+
+def test_a_press_that_a_silent_board_refuses_leaves_no_jog_without_a_hand(bench: Any) -> None:
+    """The new press has ended the one before, so nothing keeps the first one's motion alive."""
+    velocity = (40.0, 0.0, 0.0)
+    bench.do(i.SetOverride(ME, 0.0))
+    bench.jog(velocity, 0.3, press="first")
+    bench.cut = True
+    bench.hold(velocity, STALE + 0.02, press="first")
+    assert bench.mode is Mode.JOGGING
+    second = i.JogStart(ME, "second", i.JogFrame.BASE, velocity, bench.now)
+    assert "silent" in bench.do(second).detail
+    bench.cut = False
+    bench.run_to_rest()
+    assert bench.mode is Mode.IDLE
+    before = bench.now
+    bench.do(i.SetOverride(ME, 1.0))
+    bench.run(0.5)
+    assert bench.distance_moved(before) == 0
+
+
+def test_a_grab_that_a_silent_board_refuses_leaves_no_drag_without_a_hand(bench: Any) -> None:
+    dragging(bench)
+    bench.run(1.0, each=lambda: drag_alive(bench))
+    assert not bench.board.moving
+    bench.cut = True
+    bench.run(STALE + 0.02, each=lambda: drag_alive(bench))
+    assert bench.mode is Mode.JOGGING
+    assert "silent" in bench.do(i.DragStart(ME, bench.now)).detail
+    bench.cut = False
+    bench.run_to_rest()
+    assert bench.mode is Mode.IDLE
 
 
 def test_a_board_that_brakes_by_itself_says_why(bench: Any) -> None:
