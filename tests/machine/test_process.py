@@ -230,6 +230,26 @@ def test_a_robot_file_of_the_users_own(tmp_path: Path) -> None:
         wait_for(lambda: client.robot.name == "mine", "back again")
 
 
+def test_a_robot_file_that_was_changed_and_chosen_again(tmp_path: Path) -> None:
+    """What is shown and computed is of the robot that is driven, not of the file as it was."""
+    from deltaviz.robots import load
+
+    preset = (Path(load.__file__).parent / "presets" / "stm32.toml").read_text()
+    file = tmp_path / "mine.toml"
+    file.write_text(preset.replace('name = "stm32"', 'name = "mine"'))
+    with MachineClient.start(robot=str(file)) as client:
+        assert client.ready(PATIENCE)
+        file.write_text(file.read_text().replace("forearm = 338.0", "forearm = 300.0"))
+        wait_for(lambda: client.snapshot.mode is Mode.IDLE, "idle")
+        assert client.post(i.SelectRobot(ME, "mine")).result(PATIENCE) == i.Accepted()
+        wait_for(lambda: "forearm = 300.0" in client.loaded.text, "the file as it is now")
+        assert client.robot.mechanism.forearm == (300.0, 300.0, 300.0)
+        file.unlink()
+        assert client.post(i.SelectRobot(ME, "trossen")).result(PATIENCE) == i.Accepted()
+        wait_for(lambda: client.snapshot.robot == "trossen", "another robot")
+        assert client.robot.name == "trossen"
+
+
 def test_no_descriptor_is_left_open() -> None:
     def open_descriptors() -> int:
         return len(os.listdir("/proc/self/fd"))
