@@ -238,6 +238,8 @@ class Core:
         elif event is Event.BRAKES:
             if self.mode is not Mode.STOPPING:
                 self._board_braked(session, now)
+            elif not session.stopping:
+                session.stop(now)  # what was taken for its answer was a late one, to a stop before
         elif after(self.mode, event) is not self.mode and self._enter(event):
             if event is Event.IS_ESTOPPED:
                 self._stop_reason = self._estopped_by(session)

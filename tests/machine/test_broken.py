@@ -341,6 +341,27 @@ def test_a_grab_that_a_silent_board_refuses_leaves_no_drag_without_a_hand(bench:
     assert bench.mode is Mode.IDLE
 
 
+def test_a_late_answer_to_an_earlier_stop_does_not_end_this_one(bench: Any) -> None:
+    """Each repetition of a stop is answered, so one more answer may be on its way."""
+    moving(bench)
+    bench.run(0.1)
+    bench.do(i.Stop(YOU, "Stop pressed"))
+    bench.run_to_rest()
+    answer = next(heard for heard in reversed(bench.heard) if isinstance(heard, m.Stopped))
+    assert bench.do(i.Home(ME)) == ACCEPTED
+    bench.run(0.1)
+    assert bench.board.state is m.BoardState.HOMING
+    bench.cut = True
+    bench.do(i.Stop(YOU, "Stop pressed again"))
+    bench.run(0.002)
+    bench.controller.receive([answer], bench.now)
+    bench.cut = False
+    bench.run(0.2)
+    assert bench.board.state is m.BoardState.HALTED
+    assert bench.mode is Mode.UNHOMED
+    assert bench.snapshot.stop_reason == "Stop pressed again"
+
+
 def test_a_board_that_brakes_by_itself_says_why(bench: Any) -> None:
     """The host stalls for longer than the horizon: the board runs out and brakes."""
     moving(bench)
