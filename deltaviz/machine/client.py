@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any, Self
 
 from deltaviz.link.capture.writer import check_capture
+from deltaviz.link.configuration import check_configurable
 from deltaviz.link.links import Link, Links
 from deltaviz.link.urls import check_link
 from deltaviz.machine import intent as i
@@ -82,6 +83,7 @@ class MachineClient:
         if capture is not None:
             check_capture(capture)
         loaded = load_with_text(robot)
+        check_configurable(loaded.robot)
         robots = {name: name for name in preset_names()}
         robot_id = robot if robot in robots else loaded.robot.name
         robots[robot_id] = robot if robot in robots else str(Path(robot).resolve())

@@ -227,8 +227,8 @@ class Core:
         refused, session.refused = session.refused, None
         assert refused is not None
         text = sentences.board_refused(refused)
-        if refused.command == "arm" or refused.of_segment:
-            self.stop(text, now)
+        if refused.command in ("arm", "home") or refused.of_segment:
+            self.stop(text, now)  # an epoch that is still open must not outlive it
         else:
             self._stop_reason = text
 

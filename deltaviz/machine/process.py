@@ -25,6 +25,7 @@ from pathlib import Path
 from typing import Any
 
 from deltaviz.link.capture.writer import CaptureWriter
+from deltaviz.link.configuration import check_configurable
 from deltaviz.link.links import Links
 from deltaviz.link.tap import untapped
 from deltaviz.link.transport import Transport
@@ -181,6 +182,7 @@ class Process:
     def _load(self, source: str) -> Robot:
         """The robot, with all compiled that the loop will call. Compiling takes its turn."""
         loaded = load_with_text(source)
+        check_configurable(loaded.robot)
         with _in_turn():
             warm_up(loaded.robot)
         self._read = loaded.text

@@ -362,6 +362,29 @@ def test_a_late_answer_to_an_earlier_stop_does_not_end_this_one(bench: Any) -> N
     assert bench.snapshot.stop_reason == "Stop pressed again"
 
 
+def test_after_a_refused_homing_the_robot_can_be_moved_again(
+    bench: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The board still has the epoch of the motion before, and is armed for no other."""
+    stepping(bench)
+    bench.run_to_rest()
+    assert bench.board.state is m.BoardState.ARMED
+    receive = bench.board.receive
+
+    def without_lease(message: m.HostMessage) -> None:
+        if not isinstance(message, m.Keep):  # lost on its way
+            receive(message)
+
+    bench.run(0.2)
+    monkeypatch.setattr(bench.board, "receive", without_lease)
+    assert bench.do(i.Home(ME)) == ACCEPTED
+    bench.run(0.1)
+    assert bench.mode is Mode.IDLE
+    assert "refused 'home'" in bench.snapshot.stop_reason
+    monkeypatch.undo()
+    assert bench.do(i.StepPoint(ME, along_x(bench, -5.0))) == ACCEPTED
+
+
 def test_a_board_that_brakes_by_itself_says_why(bench: Any) -> None:
     """The host stalls for longer than the horizon: the board runs out and brakes."""
     moving(bench)
