@@ -297,12 +297,16 @@ class Session:
                 self._was_refused(message)
 
     def _greeted(self, reply: m.HelloReply, now: float) -> None:
-        self.board = reply
-        self._epoch = reply.last_epoch
         self._listening.heard(now)
         if reply.version != m.PROTOCOL_VERSION:
             self._fail(News.UNFIT, problems.other_version(reply.version))
-        elif reply.joints not in (0, len(self._scale)):  # 0: not configured yet
+            return
+        if reply.tick_hz == 0:  # no time of its can be told
+            self._fail(News.UNFIT, objection(self._configuration, tick_hz=0))
+            return
+        self.board = reply
+        self._epoch = reply.last_epoch
+        if reply.joints not in (0, len(self._scale)):  # 0: not configured yet
             self._fail(News.UNFIT, problems.other_joints(reply.joints, len(self._scale)))
         else:
             self._learn(News.FITS)

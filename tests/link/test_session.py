@@ -78,6 +78,24 @@ def test_a_board_that_does_not_fit_is_told_apart(answers: list[Any], problem: st
     assert problem in str(new.problem)
 
 
+@pytest.mark.parametrize(
+    ("reply", "problem"),
+    [
+        (replace(HELLO, version=9, tick_hz=0), "version 9"),  # no more is read of another version
+        (replace(HELLO, tick_hz=0), "clock"),
+    ],
+)
+def test_a_board_whose_time_cannot_be_told_is_named_and_breaks_nothing(
+    reply: m.HelloReply, problem: str
+) -> None:
+    new = new_session()
+    for answer in (telemetry(), reply, telemetry(now=2000)):
+        new.receive(answer, 0.1)
+        assert new.board_time is None
+    assert new.phase is Phase.FAILED
+    assert problem in str(new.problem)
+
+
 @pytest.mark.parametrize("state", [m.BoardState.ESTOP, m.BoardState.FAULT])
 @pytest.mark.parametrize("reports_first", [True, False])
 def test_a_board_that_is_locked_is_configured_once_it_was_reset(
