@@ -36,6 +36,7 @@ from deltaviz.robots import Robot, RobotFileError
 OVERRIDE_MAX = 1.5
 ACCEPTED = i.Accepted()
 NOT_READY = "The board is not ready yet; press again."
+POSE_LOST = "The robot does not know its pose any more; home it, then move it."
 ENDED = i.Refused(i.RefusalKind.MODE, "This press has ended; press again.")
 
 Command = (
@@ -101,7 +102,10 @@ class Controller(Core):
             return refused
         if not fresh:
             return i.Refused(i.RefusalKind.MODE, "The robot was stopped; let go, then pull again.")
-        activity = activity_for(intent, self.robot, self._pose(), self._activity)
+        pose = self._pose()
+        if event is not Event.JOG_JOINTS and not pose.known:
+            return i.Refused(i.RefusalKind.MODE, POSE_LOST)
+        activity = activity_for(intent, self.robot, pose, self._activity)
         if isinstance(intent, i.JogStart | i.DragStart):
             late = self._presses.begin(intent, now)
             if late is not None:
@@ -145,7 +149,8 @@ class Controller(Core):
             return "The board is silent; wait, then press again."
         if self._drive is not None and session.flight is not None:
             return None
-        if session.telemetry.state is not BoardState.HALTED or not session.standing:
+        halted = session.telemetry.state is BoardState.HALTED and session.standing
+        if not halted or session.theta is None:
             return NOT_READY
         self._drive = Drive(self.robot, session, homed=session.homed, follower=self._follower)
         return None

@@ -5,6 +5,7 @@ and nothing moves again until somebody presses again.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -383,6 +384,43 @@ def test_after_a_refused_homing_the_robot_can_be_moved_again(
     assert "refused 'home'" in bench.snapshot.stop_reason
     monkeypatch.undo()
     assert bench.do(i.StepPoint(ME, along_x(bench, -5.0))) == ACCEPTED
+
+
+@pytest.mark.parametrize(
+    "intent",
+    [
+        i.StepPoint(ME, (5.0, 0.0, 0.0)),
+        i.StepAngles(ME, (0.1, 0.0, 0.0)),
+        i.MoveToPoint(ME, (0.0, 0.0, -300.0), 1.0),
+        i.MoveToAngles(ME, (0.1, 0.1, 0.1), 1.0),
+        i.FollowPoint(ME, (0.0, 0.0, -300.0)),
+        i.FollowAngles(ME, (0.1, 0.1, 0.1)),
+    ],
+    ids=lambda intent: type(intent).__name__,
+)
+def test_what_is_asked_in_the_moment_in_which_the_pose_is_lost(
+    bench: Any, intent: i.Intent
+) -> None:
+    """Intents are read after the board's news, and before the mode follows from them."""
+    bench.board.press_estop(True)
+    bench.board.advance(1000)
+    bench.controller.receive(bench.board.take(), bench.now)
+    answer = bench.do(intent)
+    assert isinstance(answer, i.Refused)
+    assert answer.kind is i.RefusalKind.MODE
+    assert "pose" in answer.detail
+    bench.run(0.02)
+    assert bench.mode is Mode.ESTOP
+
+
+def test_a_board_that_counts_other_joints_is_not_moved(bench: Any) -> None:
+    telemetry = next(x for x in reversed(bench.heard) if isinstance(x, m.Telemetry))
+    flags = telemetry.flags & ~m.TelemetryFlags.HOMED
+    bench.controller.receive([replace(telemetry, counts=(1, 2), flags=flags)], bench.now)
+    bench.controller.tick(bench.now)
+    assert bench.mode is Mode.UNHOMED
+    press = i.JogStart(ME, "p", i.JogFrame.JOINTS, (0.05, 0.0, 0.0), bench.now)
+    assert isinstance(bench.do(press), i.Refused)
 
 
 def test_a_board_that_brakes_by_itself_says_why(bench: Any) -> None:
