@@ -266,6 +266,8 @@ FLOODS: list[Callable[[int], Any]] = [
     lambda n: {"type": "override", "value": 1},
     lambda n: {"type": "control", "action": "request"},
     lambda n: {**BEAT, "seq": n},
+    lambda n: {**START, "id": f"{n}-stop"},  # which is none
+    lambda n: {"type": "jog_end", "id": "estop"},
     lambda n: "nonsense",
 ]
 
