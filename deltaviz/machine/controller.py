@@ -293,7 +293,7 @@ class Controller(Core):
             case i.SelectRobot():
                 self.robot = self._load(intent.robot)
                 self._robot_id = intent.robot
-                if self._session is not None:
+                if self._session is not None or self._opening:
                     action = OpenLink(self._link, self.robot)
             case i.Disconnect():
                 pass
@@ -304,6 +304,7 @@ class Controller(Core):
         self._stop_reason = self._note = None
         self._link_action = action
         self._opening = isinstance(action, OpenLink)
+        self._estop_owed = self._estop_owed and self._opening
 
     def _load(self, robot_id: str) -> Robot:
         load = self._robots.get(robot_id)

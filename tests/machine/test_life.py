@@ -181,10 +181,35 @@ def test_an_estop_while_the_link_comes_up_reaches_the_board(bench: Any, link_is_
     assert bench.mode is Mode.DISABLED
 
 
+@pytest.mark.parametrize("wanted", [True, False])
+def test_a_robot_chosen_while_the_link_comes_up_is_connected(
+    make_bench: Any, stm32: Robot, wanted: bool
+) -> None:
+    bench = make_bench(robots={"second": lambda: stm32})
+    assert bench.do(i.Disconnect(ME)) == ACCEPTED
+    bench.run(STEP)
+    if wanted:
+        assert bench.do(i.Connect(ME, "sim")) == ACCEPTED
+    assert bench.do(i.SelectRobot(ME, "second")) == ACCEPTED
+    bench.run(0.1)
+    assert bench.snapshot.robot == "second"
+    assert bench.snapshot.link.connected is wanted
+
+
 def test_an_estop_without_any_link_is_not_kept_for_a_later_one(bench: Any) -> None:
     assert bench.do(i.Disconnect(ME)) == ACCEPTED
     bench.run(STEP)
     assert bench.do(i.EStop(YOU, "E-stop pressed")) == ACCEPTED
+    assert bench.do(i.Connect(ME, "sim")) == ACCEPTED
+    bench.run(0.1)
+    assert bench.mode is Mode.IDLE
+
+
+def test_an_estop_for_a_link_that_was_given_up_is_not_kept_for_a_later_one(bench: Any) -> None:
+    assert bench.do(i.Connect(ME, "sim")) == ACCEPTED
+    assert bench.do(i.EStop(YOU, "E-stop pressed")) == ACCEPTED
+    assert bench.do(i.Disconnect(ME)) == ACCEPTED
+    bench.run(STEP)
     assert bench.do(i.Connect(ME, "sim")) == ACCEPTED
     bench.run(0.1)
     assert bench.mode is Mode.IDLE
