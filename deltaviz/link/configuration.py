@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Iterable
+from dataclasses import fields
 from math import inf, radians
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 from zlib import crc32
 
 from deltaviz.link.messages import Configure, Options, RobotKind
 from deltaviz.link.wire.codec import encode
+from deltaviz.link.wire.errors import Unsendable
 
 if TYPE_CHECKING:  # the simulated board's process needs the hash, and none of the robots' imports
     from deltaviz.mechanism import Mechanism
@@ -18,6 +20,7 @@ if TYPE_CHECKING:  # the simulated board's process needs the hash, and none of t
 P_UNIT = 1024  # 2^-10 microsteps in one microstep
 V_UNIT = 65.536  # 2^-16 microsteps/ms in one microstep/s
 A_UNIT = 2**24 / 1e6  # 2^-24 microsteps/ms² in one microstep/s²
+I32_MAX = 2**31 - 1
 
 
 def configure_from(robot: Robot) -> Configure:
@@ -59,6 +62,39 @@ def configuration_hash(configure: Configure) -> int:
     """From 1 to 2^32 - 1; the same for equal values, on every machine."""
     _, payload = encode(configure)
     return crc32(payload) or 1
+
+
+def check_configurable(robot: Robot) -> None:
+    """Raises RobotFileError for a robot with numbers that no message to a board can carry."""
+    from deltaviz.robots import RobotFileError
+
+    try:
+        configure = configure_from(robot)
+    except OverflowError as error:
+        raise RobotFileError(_untellable(robot, "a limit")) from error
+    try:
+        encode(configure)
+    except Unsendable as error:
+        large = [field.name for field in fields(configure) if _is_large(configure, field.name)]
+        what = ", ".join(large).replace("_", " ")
+        raise RobotFileError(_untellable(robot, what)) from error
+
+
+def _is_large(configure: Configure, field: str) -> bool:
+    numbers: object = getattr(configure, field)
+    if not isinstance(numbers, tuple):
+        return False
+    return any(
+        isinstance(number, int) and abs(number) > I32_MAX
+        for number in cast("tuple[object, ...]", numbers)
+    )
+
+
+def _untellable(robot: Robot, what: str) -> str:
+    return (
+        f"A board cannot be told about {robot.name}: {what} is too large in its microsteps. "
+        "Lower it, or drive.microsteps or drive.gear, in the robot's file."
+    )
 
 
 def _options(robot: Robot) -> Options:

@@ -66,6 +66,8 @@ class Session:
         self._ticks = 0  # board time since the first telemetry, unwrapped
         self._pending: dict[str, int] = {}  # what has to be answered: in `_ticks`, until when
         self._settled = True  # telemetry has come since the last answer
+        self.awaits_reset = False  # e-stopped or at fault, it takes no configuration until then
+        self._unexplained: m.Refused | None = None  # of Configure, until telemetry tells why
         self._hello_next = now + HELLO_REPEAT
         self._kept = float("-inf")
         self._out: list[m.HostMessage] = [m.Hello(m.PROTOCOL_VERSION)]
@@ -79,7 +81,9 @@ class Session:
     @property
     def homed(self) -> bool:
         telemetry = self.telemetry
-        return telemetry is not None and m.TelemetryFlags.HOMED in telemetry.flags
+        if telemetry is None or self.awaits_reset:  # then the counts may be another robot's
+            return False
+        return m.TelemetryFlags.HOMED in telemetry.flags
 
     @property
     def moving(self) -> bool:
@@ -293,12 +297,16 @@ class Session:
                 self._was_refused(message)
 
     def _greeted(self, reply: m.HelloReply, now: float) -> None:
-        self.board = reply
-        self._epoch = reply.last_epoch
         self._listening.heard(now)
         if reply.version != m.PROTOCOL_VERSION:
             self._fail(News.UNFIT, problems.other_version(reply.version))
-        elif reply.joints not in (0, len(self._scale)):  # 0: not configured yet
+            return
+        if reply.tick_hz == 0:  # no time of its can be told
+            self._fail(News.UNFIT, objection(self._configuration, tick_hz=0))
+            return
+        self.board = reply
+        self._epoch = reply.last_epoch
+        if reply.joints not in (0, len(self._scale)):  # 0: not configured yet
             self._fail(News.UNFIT, problems.other_joints(reply.joints, len(self._scale)))
         else:
             self._learn(News.FITS)
@@ -334,6 +342,11 @@ class Session:
         overdue = [command for command, due in self._pending.items() if self._ticks >= due]
         if overdue:
             self._fail(News.UNANSWERED, problems.unanswered(overdue[0]))
+        if self._unexplained is not None:
+            self._configuration_refused(self._unexplained)
+        elif self.awaits_reset and not self._is_locked():
+            self.awaits_reset = False
+            self._command(self._configuration)
         if self.board is not None:
             self._under_way.reported(telemetry, tick_hz=self.board.tick_hz)
 
@@ -351,11 +364,21 @@ class Session:
     def _configuration_refused(self, refused: m.Refused) -> None:
         if self.board is None:
             return
+        if refused.reason is m.Refusal.STATE and self.phase is Phase.CONFIGURING:
+            self._unexplained = refused if self.telemetry is None else None
+            self.awaits_reset = self._is_locked()
+            if self._unexplained is not None or self.awaits_reset:
+                return
         if refused.reason is m.Refusal.CONFIGURATION:
             problem = objection(self._configuration, tick_hz=self.board.tick_hz)
         else:
             problem = problems.set_up_for_another(self._robot_of(self.board.configuration))
         self._fail(News.REFUSED, problem)
+
+    def _is_locked(self) -> bool:
+        """By an e-stop or a fault."""
+        telemetry = self.telemetry
+        return telemetry is not None and telemetry.state in (m.BoardState.ESTOP, m.BoardState.FAULT)
 
     def _command(self, message: m.HostMessage) -> None:
         """To be answered in the board's own time, however slowly that passes."""

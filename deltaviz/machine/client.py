@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any, Self
 
 from deltaviz.link.capture.writer import check_capture
+from deltaviz.link.configuration import check_configurable
 from deltaviz.link.links import Link, Links
 from deltaviz.link.urls import check_link
 from deltaviz.machine import intent as i
@@ -28,6 +29,7 @@ from deltaviz.machine.mode import Mode
 from deltaviz.machine.snapshot import LinkPhase, LinkStatus, Snapshot
 from deltaviz.machine.wire import (
     Answered,
+    Driven,
     Failed,
     FromProcess,
     Halt,
@@ -36,7 +38,7 @@ from deltaviz.machine.wire import (
     StatsRequest,
 )
 from deltaviz.robots import Robot, preset_names
-from deltaviz.robots.load import Loaded, load_with_text
+from deltaviz.robots.load import Loaded, load_with_text, parse_robot
 
 ENDED = "The machine's process has ended. Start deltaviz again."
 
@@ -48,7 +50,6 @@ class MachineClient:
                  talk: socket.socket, setup: Setup, loaded: Loaded) -> None:  # fmt: skip
         self._process = process
         self._stop_socket, self._talk_socket = stops, talk
-        self._setup = setup
         self._loaded = loaded
         self._links = Links(setup.link)
         self._lock = threading.Lock()
@@ -82,6 +83,7 @@ class MachineClient:
         if capture is not None:
             check_capture(capture)
         loaded = load_with_text(robot)
+        check_configurable(loaded.robot)
         robots = {name: name for name in preset_names()}
         robot_id = robot if robot in robots else loaded.robot.name
         robots[robot_id] = robot if robot in robots else str(Path(robot).resolve())
@@ -222,9 +224,10 @@ class MachineClient:
                 self._problem = f"The machine's process has failed ({value.problem}). " + (
                     "Start deltaviz again."
                 )
+            case Driven():
+                if value.text != self._loaded.text:
+                    self._loaded = Loaded(parse_robot(value.text), value.text)
             case Snapshot():
-                if value.robot != self._snapshot.robot:
-                    self._loaded = load_with_text(self._setup.robots[value.robot])
                 self._snapshot = value
                 if value.link.connected or value.link.problem is not None:
                     self._first.set()

@@ -36,6 +36,7 @@ from deltaviz.robots import Robot, RobotFileError
 OVERRIDE_MAX = 1.5
 ACCEPTED = i.Accepted()
 NOT_READY = "The board is not ready yet; press again."
+POSE_LOST = "The robot does not know its pose any more; home it, then move it."
 ENDED = i.Refused(i.RefusalKind.MODE, "This press has ended; press again.")
 
 Command = (
@@ -95,21 +96,23 @@ class Controller(Core):
     def _move(self, intent: MotionIntent, now: float) -> i.Answer:
         """Begin, or go over to, what a motion intent asks for."""
         event = event_of(intent)
+        fresh = self._is_fresh(intent, now)  # counts what is refused below, too: it is one pull
         refused = self._refusal(intent.client, event) or self._held_refusal(intent)
         if refused is not None:
             return refused
-        if isinstance(intent, i.FollowPoint | i.FollowAngles) and not self._presses.admits_value(
-            intent.client, now
-        ):
+        if not fresh:
             return i.Refused(i.RefusalKind.MODE, "The robot was stopped; let go, then pull again.")
-        activity = activity_for(intent, self.robot, self._pose(), self._activity)
+        pose = self._pose()
+        if event is not Event.JOG_JOINTS and not pose.known:
+            return i.Refused(i.RefusalKind.MODE, POSE_LOST)
+        activity = activity_for(intent, self.robot, pose, self._activity)
         if isinstance(intent, i.JogStart | i.DragStart):
             late = self._presses.begin(intent, now)
             if late is not None:
                 return i.Refused(i.RefusalKind.MODE, late)
         not_ready = self._open_drive(now)
         if not_ready is not None:
-            self._presses.stopped(now)
+            self._break_off(not_ready, now)
             return i.Refused(i.RefusalKind.MODE, not_ready)
         self._control.take(intent.client)
         self._activity = activity
@@ -117,6 +120,19 @@ class Controller(Core):
         self._stop_reason = self._note = None
         self._enter(event)
         return ACCEPTED
+
+    def _is_fresh(self, intent: MotionIntent, now: float) -> bool:
+        """Whether no stop came since the pull began that this belongs to."""
+        pulled = isinstance(intent, i.FollowPoint | i.FollowAngles)
+        return not pulled or self._presses.admits_value(intent.client, now)
+
+    def _break_off(self, reason: str, now: float) -> None:
+        """A press that begins nothing has still ended the one before: what that one held has
+        nobody to keep it alive or to let it go any more, so it stops."""
+        if self._activity is not None and self._activity.held:
+            self.stop(reason, now)
+        else:
+            self._presses.stopped(now)
 
     def _held_refusal(self, intent: MotionIntent) -> i.Refused | None:
         same = (self._presses.jog.live and isinstance(intent, i.JogStart)) or (
@@ -133,7 +149,8 @@ class Controller(Core):
             return "The board is silent; wait, then press again."
         if self._drive is not None and session.flight is not None:
             return None
-        if session.telemetry.state is not BoardState.HALTED or not session.standing:
+        halted = session.telemetry.state is BoardState.HALTED and session.standing
+        if not halted or session.theta is None:
             return NOT_READY
         self._drive = Drive(self.robot, session, homed=session.homed, follower=self._follower)
         return None
@@ -276,7 +293,7 @@ class Controller(Core):
             case i.SelectRobot():
                 self.robot = self._load(intent.robot)
                 self._robot_id = intent.robot
-                if self._session is not None:
+                if self._session is not None or self._opening:
                     action = OpenLink(self._link, self.robot)
             case i.Disconnect():
                 pass
@@ -287,6 +304,7 @@ class Controller(Core):
         self._stop_reason = self._note = None
         self._link_action = action
         self._opening = isinstance(action, OpenLink)
+        self._estop_owed = self._estop_owed and self._opening
 
     def _load(self, robot_id: str) -> Robot:
         load = self._robots.get(robot_id)

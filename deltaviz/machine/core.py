@@ -25,7 +25,7 @@ from deltaviz.machine.mode import Mode
 from deltaviz.machine.picture import Speedometer, finite
 from deltaviz.machine.picture import reported as reported_pose
 from deltaviz.machine.presses import Presses
-from deltaviz.machine.snapshot import Snapshot
+from deltaviz.machine.snapshot import LinkStatus, Snapshot
 from deltaviz.machine.transitions import AT_REST, MOVING, Event, after
 from deltaviz.motion.goal import Rest, ToAngles, ToPoint
 from deltaviz.robots import Robot
@@ -79,6 +79,7 @@ class Core:
         self._link_action: LinkAction | None = OpenLink(link, robot)
         self._link_report = LinkReport()
         self._opening = True
+        self._estop_owed = False  # to the board that is being connected
         self._acquaintance = Acquaintance()
         self._greeted = False  # the board of this session
         self._note: str | None = None
@@ -115,10 +116,13 @@ class Core:
             robot_of=self._robot_of,
         )
         self._speeds = Speedometer(self.robot)
+        if self._estop_owed:
+            self._session.estop(now)
+        self._estop_owed = False
 
     def link_failed(self, problem: str, now: float) -> None:
         """The link could not be opened, or has closed. `problem` says what to do, too."""
-        self._opening = False
+        self._opening = self._estop_owed = False
         self._lose(problem, now)
 
     def receive(
@@ -146,11 +150,13 @@ class Core:
         self._enter(Event.STOP)
 
     def estop(self, reason: str, now: float) -> None:
-        """Drivers off, in every mode."""
+        """Drivers off, in every mode; while a link is being opened, as soon as it is."""
         self._stop_reason = reason
         self._drop_motion(now)
         if self._session is not None:
             self._session.estop(now)
+        else:
+            self._estop_owed = self._opening
         self._enter(Event.ESTOP)
 
     def _drop_motion(self, now: float) -> None:
@@ -206,7 +212,7 @@ class Core:
             self.stop(sentences.NEVER_BEGAN, now)
         if session.ready:
             self._meet(session)
-        if session.ready and session.settled:
+        if (session.ready or session.awaits_reset) and session.settled:
             event = reported(session)
             if event is not None:
                 self._board_says(event, session, now)
@@ -221,8 +227,8 @@ class Core:
         refused, session.refused = session.refused, None
         assert refused is not None
         text = sentences.board_refused(refused)
-        if refused.command == "arm" or refused.of_segment:
-            self.stop(text, now)
+        if refused.command in ("arm", "home") or refused.of_segment:
+            self.stop(text, now)  # an epoch that is still open must not outlive it
         else:
             self._stop_reason = text
 
@@ -232,6 +238,8 @@ class Core:
         elif event is Event.BRAKES:
             if self.mode is not Mode.STOPPING:
                 self._board_braked(session, now)
+            elif not session.stopping:
+                session.stop(now)  # what was taken for its answer was a late one, to a stop before
         elif after(self.mode, event) is not self.mode and self._enter(event):
             if event is Event.IS_ESTOPPED:
                 self._stop_reason = self._estopped_by(session)
@@ -363,11 +371,15 @@ class Core:
             stop_reason=self._stop_reason,
             fault=sentences.FAULT[fault] if self.mode is Mode.FAULT and fault else None,
             override=self._override,
-            next_step=waiting_for_answer(link) or sentences.NEXT_STEP.get(self.mode),
+            next_step=self._next_step(link),
             board_time=None if session is None else session.board_time,
             underruns=self._underruns + (0 if session is None else session.underruns),
             counts=telemetry.counts if telemetry is not None and telemetry.counts else None,
         )
+
+    def _next_step(self, link: LinkStatus) -> str | None:
+        waiting = waiting_for_answer(link) if self.mode is Mode.OFFLINE else None
+        return waiting or sentences.NEXT_STEP.get(self.mode)
 
 
 _FOLLOWS = frozenset({Mode.JOGGING, Mode.MOVING, Mode.RUNNING, Mode.PAUSED})

@@ -13,6 +13,8 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from deltaviz.link.configuration import I32_MAX
+from deltaviz.link.flight import POSITION_UNIT
 from deltaviz.link.rules import SEGMENT_MAX_MS, SEGMENT_MIN_MS
 from deltaviz.motion.knot import Knot
 from deltaviz.robots import Robot
@@ -21,6 +23,7 @@ RATE_SLACK = 1.002  # of velocity and acceleration limits: rounding to the board
 MARGIN_SLACK = 0.02  # units of margin, about mm
 SAME_BRANCH = 1e-6  # rad
 DURATION_SLACK = 1e-9  # s
+FURTHEST = 0.99 * I32_MAX / POSITION_UNIT  # microsteps; the rest is for the brake
 BRAKE_SHARES = (0.25, 0.5, 0.75, 1.0)  # of the brake's time
 
 
@@ -33,13 +36,14 @@ class Guard:
         self._homed = homed
         self._velocity = tuple(limits.velocity if homed else limits.unhomed_velocity)
         self._acceleration = tuple(limits.acceleration)
+        self._scale = tuple(robot.drive.microsteps_per_rad)
         self._theta = tuple(theta)
         self._rate = tuple(0.0 for _ in theta)
         self._floor = np.fmin(self._margins((self._theta,))[0], 0.0) if homed else np.empty(0)
 
     def refusal(self, knot: Knot) -> str | None:
         """Why `knot` must not be sent, or None: then it is the one that the next starts from."""
-        reason = self._malformed(knot) or self._too_fast(knot)
+        reason = self._malformed(knot) or self._too_far(knot) or self._too_fast(knot)
         if reason is None and self._homed:
             reason = self._illegal(knot)
         if reason is None:
@@ -55,6 +59,14 @@ class Guard:
         shortest, longest = SEGMENT_MIN_MS / 1000, SEGMENT_MAX_MS / 1000
         if not shortest - DURATION_SLACK <= knot.duration <= longest + DURATION_SLACK:
             return f"a segment of {knot.duration * 1000:.3g} ms"
+        return None
+
+    def _too_far(self, knot: Knot) -> str | None:
+        """An unhomed robot has no joint limits; what a knot can say is one. It may come back."""
+        moved = zip(self._theta, knot.theta, self._scale, strict=True)
+        for joint, (before, after, scale) in enumerate(moved):
+            if abs(after) * scale > FURTHEST and abs(after) > abs(before):
+                return f"joint {joint + 1} at {math.degrees(after):.0f}°, too far from its zero"
         return None
 
     def _too_fast(self, knot: Knot) -> str | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from deltaviz.link.configuration import configuration_hash, configure_from
+from deltaviz.link.configuration import check_configurable, configuration_hash, configure_from
 from deltaviz.robots import RobotFileError, load_robot
 
 
@@ -18,7 +18,9 @@ class KnownRobots:
         """The id of the robot whose configuration has this hash."""
         for id_, source in self._sources.items():
             try:
-                if configuration_hash(configure_from(load_robot(source))) == digest:
+                robot = load_robot(source)
+                check_configurable(robot)
+                if configuration_hash(configure_from(robot)) == digest:
                     return id_
             except RobotFileError:  # changed since the start, and spoilt
                 continue

@@ -25,6 +25,7 @@ from pathlib import Path
 from typing import Any
 
 from deltaviz.link.capture.writer import CaptureWriter
+from deltaviz.link.configuration import check_configurable
 from deltaviz.link.links import Links
 from deltaviz.link.tap import untapped
 from deltaviz.link.transport import Transport
@@ -42,13 +43,15 @@ from deltaviz.machine.wire import (
     BEGINS_MOTION,
     STOPPED_SINCE,
     Answered,
+    Driven,
     Failed,
     Halt,
     Posted,
     Setup,
     StatsRequest,
 )
-from deltaviz.robots import Robot, load_robot
+from deltaviz.robots import Robot
+from deltaviz.robots.load import load_with_text
 
 MOVING_WAIT = 0.002  # s
 IDLE_WAIT = 0.020
@@ -69,7 +72,8 @@ class Process:
         self._talk_in = reader
         self._talk_out = FrameWriter(talk)
         self._links = Links(setup.link)
-        loaders = {key: partial(load, source) for key, source in setup.robots.items()}
+        self._read: str | None = None  # the text of a robot that the parent has to be told
+        loaders = {key: partial(self._load, source) for key, source in setup.robots.items()}
         self._controller = Controller(
             loaders[setup.robot](),
             robot_id=setup.robot,
@@ -175,6 +179,15 @@ class Process:
             return STOPPED_SINCE
         return self._controller.handle(what, time.monotonic())
 
+    def _load(self, source: str) -> Robot:
+        """The robot, with all compiled that the loop will call. Compiling takes its turn."""
+        loaded = load_with_text(source)
+        check_configurable(loaded.robot)
+        with _in_turn():
+            warm_up(loaded.robot)
+        self._read = loaded.text
+        return loaded.robot
+
     def _open_link(self, link: str, robot: Robot) -> Transport:
         tap = untapped if self._capture is None else partial(self._capture.tap, link)
         return open_link(self._links.url(link), robot, tap)
@@ -193,6 +206,9 @@ class Process:
         self._changed = shown != self._shown  # show what follows a change soon, too
         self._shown = shown
         self._pictured = now
+        if self._read is not None:
+            self._talk_out.send(Driven(self._read))
+            self._read = None
         self._talk_out.send_newest(snapshot)
 
     def _wait(self) -> None:
@@ -209,14 +225,6 @@ class Process:
             wait(sources, timeout)
         else:
             time.sleep(timeout)
-
-
-def load(source: str) -> Robot:
-    """The robot, with all compiled that the loop will call. Compiling takes its turn."""
-    robot = load_robot(source)
-    with _in_turn():
-        warm_up(robot)
-    return robot
 
 
 def main() -> int:

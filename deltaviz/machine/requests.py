@@ -40,6 +40,10 @@ class Pose:
     xyz: tuple[float, ...]
     theta: tuple[float, ...]
 
+    @property
+    def known(self) -> bool:
+        return all(map(math.isfinite, (*self.xyz, *self.theta)))
+
 
 def event_of(intent: MotionIntent) -> Event:
     match intent:

@@ -73,4 +73,14 @@ class Failed:
     problem: str
 
 
-FromProcess = Answered | Failed | Snapshot
+@dataclass(frozen=True, slots=True)
+class Driven:
+    """The text of the robot that is driven from now on, as it was read; before all snapshots of it.
+
+    A robot file may have changed since the parent read it, and may change or go at any time.
+    """
+
+    text: str
+
+
+FromProcess = Answered | Driven | Failed | Snapshot

@@ -34,6 +34,7 @@ MESSAGES_BURST, MESSAGES_PER_SECOND = 200.0, 200.0  # a page sends a few a secon
 BEATS_BURST, BEATS_PER_SECOND = 100.0, 100.0  # and 20 signs of life while something is held
 ERRORS_BURST, ERRORS_PER_SECOND = 30.0, 1.0
 _PRESSES_KEPT = 8
+_STOP = 'stop"'  # in every text that a page sends as one
 _STOP_PAGE, _ESTOP_PAGE = "Stop was pressed", "E-stop was pressed"
 
 Reply = dict[str, Any]
@@ -91,6 +92,9 @@ class Conversation:
             message = messages.PAGE_MESSAGE.validate_json(text)
         except ValidationError as error:
             return self._malformed(_what_is_wrong(error), now)
+        if self._only_looked_like_a_stop(text, message) and not self._has_turn(text, now):
+            self._complain(now)
+            return Verdict.GO_ON
         try:
             self._act(message, now)
         except AxesError as error:
@@ -98,12 +102,17 @@ class Conversation:
         return Verdict.GO_ON
 
     def _has_room(self, text: str | None, now: float) -> bool:
-        """A flood of anything delays no stop, and does not starve a held jog of its beats."""
+        """A flood of anything delays no stop: what looks like one is read before it is counted."""
         start = (text or "")[:MAX_MESSAGE]
-        if 'stop"' in start:
-            return True
-        is_beat = '"jog' in start or '"drag_alive' in start
+        return _STOP in start or self._has_turn(start, now)
+
+    def _has_turn(self, text: str, now: float) -> bool:
+        """Nor does it starve a held jog of its beats."""
+        is_beat = '"jog' in text or '"drag_alive' in text
         return (self._beats if is_beat else self._messages).take(now)
+
+    def _only_looked_like_a_stop(self, text: str, message: messages.PageMessage) -> bool:
+        return _STOP in text and not isinstance(message, messages.Stop | messages.EStop)
 
     def _act(self, message: messages.PageMessage, now: float) -> None:
         client = self._client

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal, Self
 
-from pydantic import Field, Strict, TypeAdapter, model_validator
+from pydantic import ConfigDict, Field, Strict, TypeAdapter, model_validator
 
 from deltaviz.web.models import Angles, Model, Point
 
@@ -64,11 +64,17 @@ class SetOverride(Model):
     value: Override
 
 
-class Stop(Model):
+class _Stopping(Model):
+    """Whatever else it says, it stops."""
+
+    model_config = ConfigDict(extra="ignore")
+
+
+class Stop(_Stopping):
     type: Literal["stop"]
 
 
-class EStop(Model):
+class EStop(_Stopping):
     type: Literal["estop"]
 
 

@@ -14,7 +14,7 @@ import pytest
 from deltaviz import load_robot
 from deltaviz.link.board import SimulatedBoard
 from deltaviz.link.board.parameters import parameters_from
-from deltaviz.link.configuration import configuration_hash, configure_from
+from deltaviz.link.configuration import check_configurable, configuration_hash, configure_from
 from deltaviz.link.messages import BoardState, Configured, Options, RobotKind
 from deltaviz.link.wire.codec import decode_host, encode
 from deltaviz.robots import RobotFileError
@@ -184,3 +184,27 @@ def test_presets_differ():
     assert len({configuration_hash(configure_from(load_robot(name))) for name in PRESETS}) == len(
         PRESETS
     )
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_every_robot_of_ours_can_be_told_to_a_board(name: str) -> None:
+    check_configurable(load_robot(name))
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "named"),
+    [
+        ("acceleration_deg_s2", "1e9", "acceleration"),
+        ("acceleration_deg_s2", "1e300", "acceleration"),
+        ("acceleration_deg_s2", "1e308", "a limit"),
+        ("max_travel_deg", "1e9", "homing max travel"),
+    ],
+)
+def test_a_robot_whose_numbers_no_message_carries_is_refused_with_their_name(
+    field: str, value: str, named: str
+) -> None:
+    lines = preset_text("stm32").splitlines()
+    text = "\n".join(f"{field} = {value}" if line.startswith(field) else line for line in lines)
+    robot = parse_robot(text)
+    with pytest.raises(RobotFileError, match=named):
+        check_configurable(robot)

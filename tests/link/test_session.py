@@ -58,7 +58,8 @@ def test_it_greets_configures_and_arms_nothing_by_itself() -> None:
         ([replace(HELLO, version=9)], "version 9"),
         ([replace(HELLO, joints=3)], "3 joints"),
         ([HELLO, m.Configured(DIGEST + 1)], "configuration"),
-        ([HELLO, m.Refused("configure", m.Refusal.STATE)], "another robot"),
+        ([HELLO, telemetry(), m.Refused("configure", m.Refusal.STATE)], "another robot"),
+        ([HELLO, m.Refused("configure", m.Refusal.STATE), telemetry()], "another robot"),
         (
             [replace(HELLO, tick_hz=10_000), m.Refused("configure", m.Refusal.CONFIGURATION)],
             "clock",
@@ -75,6 +76,54 @@ def test_a_board_that_does_not_fit_is_told_apart(answers: list[Any], problem: st
         new.receive(answer, 0.1)
     assert new.phase is Phase.FAILED
     assert problem in str(new.problem)
+
+
+@pytest.mark.parametrize(
+    ("reply", "problem"),
+    [
+        (replace(HELLO, version=9, tick_hz=0), "version 9"),  # no more is read of another version
+        (replace(HELLO, tick_hz=0), "clock"),
+    ],
+)
+def test_a_board_whose_time_cannot_be_told_is_named_and_breaks_nothing(
+    reply: m.HelloReply, problem: str
+) -> None:
+    new = new_session()
+    for answer in (telemetry(), reply, telemetry(now=2000)):
+        new.receive(answer, 0.1)
+        assert new.board_time is None
+    assert new.phase is Phase.FAILED
+    assert problem in str(new.problem)
+
+
+@pytest.mark.parametrize("state", [m.BoardState.ESTOP, m.BoardState.FAULT])
+@pytest.mark.parametrize("reports_first", [True, False])
+def test_a_board_that_is_locked_is_configured_once_it_was_reset(
+    state: m.BoardState, reports_first: bool
+) -> None:
+    """It is told in which state it is, and nothing is reset without a person."""
+    new = new_session()
+    locked = telemetry(state=state)
+    refused = m.Refused("configure", m.Refusal.STATE)
+    for answer in [HELLO, *([locked, refused] if reports_first else [refused, locked])]:
+        new.receive(answer, 0.1)
+    new.take()
+    for k in range(1, 100):
+        new.receive(locked, 0.1 * k)
+        new.tick(0.1 * k)
+    assert new.take() == []
+    assert new.awaits_reset
+    assert new.settled
+    assert not new.homed, "its counts may be another robot's"
+    new.reset(10.0)
+    new.receive(m.Done("reset"), 10.01)
+    assert new.take() == [m.Reset()]
+    new.receive(telemetry(state=m.BoardState.DISABLED), 10.02)
+    assert new.take() == [CONFIGURATION]
+    new.receive(m.Configured(DIGEST), 10.03)
+    new.receive(telemetry(state=m.BoardState.DISABLED), 10.04)
+    assert new.ready
+    assert not new.awaits_reset
 
 
 def test_an_unanswered_command_ends_the_session(session: Session) -> None:

@@ -5,14 +5,17 @@ and nothing moves again until somebody presses again.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import pytest
 
 from deltaviz.link import messages as m
 from deltaviz.link.board import SimulatedBoard
+from deltaviz.link.timing import STALE
 from deltaviz.machine import intent as i
 from deltaviz.machine.core import Core
+from deltaviz.machine.fresh_press import PAUSE
 from deltaviz.machine.jog_lease import LEASE, JogLease
 from deltaviz.machine.mode import Mode
 from deltaviz.machine.presses import Presses
@@ -283,6 +286,141 @@ def test_a_slider_pulled_through_a_stop_does_not_resume(bench: Any) -> None:
     assert bench.distance_moved(rested) == 0
     bench.run(0.5)
     assert bench.do(i.FollowAngles(ME, (target, 0.0, 0.0))) == ACCEPTED
+
+
+def test_a_slider_pulled_through_a_long_stop_does_not_resume(bench: Any) -> None:
+    """What is refused while the robot still brakes belongs to the same pull."""
+    target = 0.0
+
+    def pull() -> None:
+        nonlocal target
+        target += 0.001
+        bench.do(i.FollowAngles(ME, (target, 0.0, 0.0)))
+
+    bench.run(0.3, each=pull)
+    bench.do(i.Stop(YOU, "Stop pressed"))
+    bench.cut = True
+    bench.run(PAUSE + 0.1, each=pull)
+    assert bench.mode is Mode.STOPPING
+    bench.cut = False
+    bench.run(0.1, each=pull)
+    rested = bench.now
+    bench.run(0.3, each=pull)
+    assert bench.mode is Mode.IDLE
+    assert bench.distance_moved(rested) == 0
+
+
+def test_a_press_that_a_silent_board_refuses_leaves_no_jog_without_a_hand(bench: Any) -> None:
+    """The new press has ended the one before, so nothing keeps the first one's motion alive."""
+    velocity = (40.0, 0.0, 0.0)
+    bench.do(i.SetOverride(ME, 0.0))
+    bench.jog(velocity, 0.3, press="first")
+    bench.cut = True
+    bench.hold(velocity, STALE + 0.02, press="first")
+    assert bench.mode is Mode.JOGGING
+    second = i.JogStart(ME, "second", i.JogFrame.BASE, velocity, bench.now)
+    assert "silent" in bench.do(second).detail
+    bench.cut = False
+    bench.run_to_rest()
+    assert bench.mode is Mode.IDLE
+    before = bench.now
+    bench.do(i.SetOverride(ME, 1.0))
+    bench.run(0.5)
+    assert bench.distance_moved(before) == 0
+
+
+def test_a_grab_that_a_silent_board_refuses_leaves_no_drag_without_a_hand(bench: Any) -> None:
+    dragging(bench)
+    bench.run(1.0, each=lambda: drag_alive(bench))
+    assert not bench.board.moving
+    bench.cut = True
+    bench.run(STALE + 0.02, each=lambda: drag_alive(bench))
+    assert bench.mode is Mode.JOGGING
+    assert "silent" in bench.do(i.DragStart(ME, bench.now)).detail
+    bench.cut = False
+    bench.run_to_rest()
+    assert bench.mode is Mode.IDLE
+
+
+def test_a_late_answer_to_an_earlier_stop_does_not_end_this_one(bench: Any) -> None:
+    """Each repetition of a stop is answered, so one more answer may be on its way."""
+    moving(bench)
+    bench.run(0.1)
+    bench.do(i.Stop(YOU, "Stop pressed"))
+    bench.run_to_rest()
+    answer = next(heard for heard in reversed(bench.heard) if isinstance(heard, m.Stopped))
+    assert bench.do(i.Home(ME)) == ACCEPTED
+    bench.run(0.1)
+    assert bench.board.state is m.BoardState.HOMING
+    bench.cut = True
+    bench.do(i.Stop(YOU, "Stop pressed again"))
+    bench.run(0.002)
+    bench.controller.receive([answer], bench.now)
+    bench.cut = False
+    bench.run(0.2)
+    assert bench.board.state is m.BoardState.HALTED
+    assert bench.mode is Mode.UNHOMED
+    assert bench.snapshot.stop_reason == "Stop pressed again"
+
+
+def test_after_a_refused_homing_the_robot_can_be_moved_again(
+    bench: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The board still has the epoch of the motion before, and is armed for no other."""
+    stepping(bench)
+    bench.run_to_rest()
+    assert bench.board.state is m.BoardState.ARMED
+    receive = bench.board.receive
+
+    def without_lease(message: m.HostMessage) -> None:
+        if not isinstance(message, m.Keep):  # lost on its way
+            receive(message)
+
+    bench.run(0.2)
+    monkeypatch.setattr(bench.board, "receive", without_lease)
+    assert bench.do(i.Home(ME)) == ACCEPTED
+    bench.run(0.1)
+    assert bench.mode is Mode.IDLE
+    assert "refused 'home'" in bench.snapshot.stop_reason
+    monkeypatch.undo()
+    assert bench.do(i.StepPoint(ME, along_x(bench, -5.0))) == ACCEPTED
+
+
+@pytest.mark.parametrize(
+    "intent",
+    [
+        i.StepPoint(ME, (5.0, 0.0, 0.0)),
+        i.StepAngles(ME, (0.1, 0.0, 0.0)),
+        i.MoveToPoint(ME, (0.0, 0.0, -300.0), 1.0),
+        i.MoveToAngles(ME, (0.1, 0.1, 0.1), 1.0),
+        i.FollowPoint(ME, (0.0, 0.0, -300.0)),
+        i.FollowAngles(ME, (0.1, 0.1, 0.1)),
+    ],
+    ids=lambda intent: type(intent).__name__,
+)
+def test_what_is_asked_in_the_moment_in_which_the_pose_is_lost(
+    bench: Any, intent: i.Intent
+) -> None:
+    """Intents are read after the board's news, and before the mode follows from them."""
+    bench.board.press_estop(True)
+    bench.board.advance(1000)
+    bench.controller.receive(bench.board.take(), bench.now)
+    answer = bench.do(intent)
+    assert isinstance(answer, i.Refused)
+    assert answer.kind is i.RefusalKind.MODE
+    assert "pose" in answer.detail
+    bench.run(0.02)
+    assert bench.mode is Mode.ESTOP
+
+
+def test_a_board_that_counts_other_joints_is_not_moved(bench: Any) -> None:
+    telemetry = next(x for x in reversed(bench.heard) if isinstance(x, m.Telemetry))
+    flags = telemetry.flags & ~m.TelemetryFlags.HOMED
+    bench.controller.receive([replace(telemetry, counts=(1, 2), flags=flags)], bench.now)
+    bench.controller.tick(bench.now)
+    assert bench.mode is Mode.UNHOMED
+    press = i.JogStart(ME, "p", i.JogFrame.JOINTS, (0.05, 0.0, 0.0), bench.now)
+    assert isinstance(bench.do(press), i.Refused)
 
 
 def test_a_board_that_brakes_by_itself_says_why(bench: Any) -> None:

@@ -12,11 +12,12 @@ import numpy as np
 import pytest
 
 from deltaviz.machine import intent as i
+from deltaviz.machine.creep import Creep
 from deltaviz.machine.drive import FollowerMaker
-from deltaviz.machine.guard import Guard
+from deltaviz.machine.guard import FURTHEST, Guard
 from deltaviz.machine.mode import Mode
 from deltaviz.motion import Follower
-from deltaviz.motion.goal import AtVelocity, Goal, ToPoint
+from deltaviz.motion.goal import AtJointVelocity, AtVelocity, Goal, ToPoint
 from deltaviz.motion.knot import Knot
 from deltaviz.robots import Robot
 
@@ -235,6 +236,22 @@ def test_a_state_from_which_no_brake_fits_is_refused(stm32: Robot) -> None:
         refused = guard.refusal(Knot(PERIOD, tuple(theta), (rate,) * 3))
     assert "brake" in refused
     assert legal
+
+
+def test_an_unhomed_robot_turns_no_further_than_a_knot_can_say(stm32: Robot) -> None:
+    """With a high gear that is less than a turn. Back it may come."""
+    per_rad = stm32.drive.microsteps_per_rad
+    furthest = FURTHEST / per_rad[0]
+    theta = (furthest - 0.001, 0.0, 0.0)
+    guard = Guard(stm32, theta, homed=False)
+    creep = Creep(stm32, theta, period=0.010)
+    out, back = AtJointVelocity((0.05, 0.0, 0.0)), AtJointVelocity((-0.05, 0.0, 0.0))
+    refusals = [guard.refusal(creep.step(out)) for _ in range(10)]
+    assert refusals[0] is None
+    assert "too far" in str(refusals[-1])
+    beyond = (furthest + 0.001, 0.0, 0.0)
+    guard, creep = Guard(stm32, beyond, homed=False), Creep(stm32, beyond, period=0.010)
+    assert guard.refusal(creep.step(back)) is None
 
 
 def test_unhomed_only_speed_counts(stm32: Robot) -> None:

@@ -8,12 +8,14 @@ from typing import Any
 import pytest
 
 from deltaviz.link import messages as m
+from deltaviz.link.board import SimulatedBoard
 from deltaviz.machine import intent as i
 from deltaviz.machine.mode import Mode
 from deltaviz.machine.transitions import AT_REST, Event, after
 from deltaviz.robots import Robot, load_robot
 
 ME, YOU = "me", "you"
+STEP = 0.002  # s; one turn of the bench
 ACCEPTED = i.Accepted()
 
 
@@ -136,6 +138,81 @@ def test_the_button_of_the_board_is_named_and_so_is_that_it_is_still_pressed(ben
     bench.run(0.05)
     assert bench.mode is Mode.ESTOP
     assert "still pressed" in bench.snapshot.stop_reason
+
+
+def test_a_board_that_is_switched_on_with_its_button_pressed_is_reset_and_connected(
+    make_bench: Any,
+) -> None:
+    """It knows no robot yet, and takes none while it is e-stopped."""
+    bench = make_bench(load_robot("stm32"), homed=False)
+    assert bench.do(i.Disconnect(ME)) == ACCEPTED
+    bench.board = SimulatedBoard()
+    bench.board.press_estop(True)
+    bench.reconnect_same_board()
+    bench.run(0.1)
+    assert bench.mode is Mode.ESTOP
+    assert "hardware emergency stop was pressed" in bench.snapshot.stop_reason
+    assert "reset" in bench.snapshot.next_step
+    assert bench.do(i.Reset(ME)) == ACCEPTED
+    bench.run(0.1)
+    assert bench.mode is Mode.ESTOP
+    assert "still pressed" in bench.snapshot.stop_reason
+    bench.board.press_estop(False)
+    bench.run(0.1)
+    assert bench.mode is Mode.ESTOP, "nothing resets it but a person"
+    assert bench.do(i.Reset(ME)) == ACCEPTED
+    bench.run(0.1)
+    assert bench.mode is Mode.DISABLED
+    assert bench.snapshot.link.connected
+
+
+@pytest.mark.parametrize("link_is_open", [False, True])
+def test_an_estop_while_the_link_comes_up_reaches_the_board(bench: Any, link_is_open: bool) -> None:
+    assert bench.do(i.Connect(ME, "sim")) == ACCEPTED
+    if link_is_open:
+        bench.run(STEP)
+    assert bench.mode is Mode.OFFLINE
+    assert bench.do(i.EStop(YOU, "E-stop pressed")) == ACCEPTED
+    bench.run(0.1)
+    assert bench.board.state is m.BoardState.ESTOP
+    assert bench.mode is Mode.ESTOP
+    assert bench.do(i.Reset(ME)) == ACCEPTED
+    bench.run(0.1)
+    assert bench.mode is Mode.DISABLED
+
+
+@pytest.mark.parametrize("wanted", [True, False])
+def test_a_robot_chosen_while_the_link_comes_up_is_connected(
+    make_bench: Any, stm32: Robot, wanted: bool
+) -> None:
+    bench = make_bench(robots={"second": lambda: stm32})
+    assert bench.do(i.Disconnect(ME)) == ACCEPTED
+    bench.run(STEP)
+    if wanted:
+        assert bench.do(i.Connect(ME, "sim")) == ACCEPTED
+    assert bench.do(i.SelectRobot(ME, "second")) == ACCEPTED
+    bench.run(0.1)
+    assert bench.snapshot.robot == "second"
+    assert bench.snapshot.link.connected is wanted
+
+
+def test_an_estop_without_any_link_is_not_kept_for_a_later_one(bench: Any) -> None:
+    assert bench.do(i.Disconnect(ME)) == ACCEPTED
+    bench.run(STEP)
+    assert bench.do(i.EStop(YOU, "E-stop pressed")) == ACCEPTED
+    assert bench.do(i.Connect(ME, "sim")) == ACCEPTED
+    bench.run(0.1)
+    assert bench.mode is Mode.IDLE
+
+
+def test_an_estop_for_a_link_that_was_given_up_is_not_kept_for_a_later_one(bench: Any) -> None:
+    assert bench.do(i.Connect(ME, "sim")) == ACCEPTED
+    assert bench.do(i.EStop(YOU, "E-stop pressed")) == ACCEPTED
+    assert bench.do(i.Disconnect(ME)) == ACCEPTED
+    bench.run(STEP)
+    assert bench.do(i.Connect(ME, "sim")) == ACCEPTED
+    bench.run(0.1)
+    assert bench.mode is Mode.IDLE
 
 
 def test_the_simulated_board_starts_idle_at_the_ready_pose(bench: Any) -> None:

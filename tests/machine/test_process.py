@@ -202,6 +202,29 @@ def test_a_bad_robot_or_link_is_told_before_anything_starts() -> None:
         MachineClient.start(link="serial:///dev/ttyUSB0?speed=9600")
 
 
+def test_a_robot_that_no_board_can_be_told_about_is_refused(tmp_path: Path) -> None:
+    """At the start, and when its file was changed before it is chosen: nothing fails."""
+    from deltaviz.robots import load
+
+    preset = (Path(load.__file__).parent / "presets" / "stm32.toml").read_text()
+    good = preset.replace('name = "stm32"', 'name = "mine"')
+    bad = good.replace("acceleration_deg_s2 = 4500", "acceleration_deg_s2 = 1e9")
+    assert bad != good
+    file = tmp_path / "mine.toml"
+    file.write_text(bad)
+    with pytest.raises(RobotFileError, match="acceleration is too large"):
+        MachineClient.start(robot=str(file))
+    file.write_text(good)
+    with MachineClient.start(robot=str(file)) as client:
+        assert client.ready(PATIENCE)
+        wait_for(lambda: client.snapshot.mode is Mode.IDLE, "idle")
+        file.write_text(bad)
+        answer = client.post(i.SelectRobot(ME, "mine")).result(PATIENCE)
+        assert isinstance(answer, i.Refused)
+        assert "acceleration is too large" in answer.detail
+        assert client.snapshot.mode is Mode.IDLE
+
+
 def test_the_loop_tells_how_regular_it_is(shared: MachineClient) -> None:
     move(shared)
     stats = shared.stats().result(PATIENCE)
@@ -228,6 +251,26 @@ def test_a_robot_file_of_the_users_own(tmp_path: Path) -> None:
         wait_for(lambda: client.snapshot.mode is Mode.DISABLED, "the new board")
         assert client.post(i.SelectRobot(ME, "mine")).result(PATIENCE) == i.Accepted()
         wait_for(lambda: client.robot.name == "mine", "back again")
+
+
+def test_a_robot_file_that_was_changed_and_chosen_again(tmp_path: Path) -> None:
+    """What is shown and computed is of the robot that is driven, not of the file as it was."""
+    from deltaviz.robots import load
+
+    preset = (Path(load.__file__).parent / "presets" / "stm32.toml").read_text()
+    file = tmp_path / "mine.toml"
+    file.write_text(preset.replace('name = "stm32"', 'name = "mine"'))
+    with MachineClient.start(robot=str(file)) as client:
+        assert client.ready(PATIENCE)
+        file.write_text(file.read_text().replace("forearm = 338.0", "forearm = 300.0"))
+        wait_for(lambda: client.snapshot.mode is Mode.IDLE, "idle")
+        assert client.post(i.SelectRobot(ME, "mine")).result(PATIENCE) == i.Accepted()
+        wait_for(lambda: "forearm = 300.0" in client.loaded.text, "the file as it is now")
+        assert client.robot.mechanism.forearm == (300.0, 300.0, 300.0)
+        file.unlink()
+        assert client.post(i.SelectRobot(ME, "trossen")).result(PATIENCE) == i.Accepted()
+        wait_for(lambda: client.snapshot.robot == "trossen", "another robot")
+        assert client.robot.name == "trossen"
 
 
 def test_no_descriptor_is_left_open() -> None:

@@ -49,6 +49,8 @@ def page(machine: Any, scene: Any) -> Page:
     [
         ({"type": "stop"}, ("stop", "me")),
         ({"type": "estop"}, ("estop", "me")),
+        ({"type": "stop", "id": "p1", "t_ms": -1}, ("stop", "me")),
+        ({"type": "estop", "why": None}, ("estop", "me")),
         (START, intent.JogStart("me", "p1", JogFrame.BASE, (10, 0, -5), NOW)),
         (
             {"type": "jog_start", "id": "a-b_C", "frame": "joints", "v_deg_s": [0, 180, 0]},
@@ -187,7 +189,7 @@ MALFORMED: list[tuple[str | None, str]] = [
     ('{"type": "fly"}', "'type' must be one of"),
     ('{"type": 7}', "'type' must be one of"),
     ('{"type": null}', "'type' must be one of"),
-    ('{"type": "stop", "why": 1}', "why"),
+    ('{"type": "jog_end", "id": "a", "why": 1}', "why"),
     ('{"type": "jog_start"}', "id"),
     (json.dumps({**START, "id": ""}), "id"),
     (json.dumps({**START, "id": "a" * 65}), "id"),
@@ -264,6 +266,8 @@ FLOODS: list[Callable[[int], Any]] = [
     lambda n: {"type": "override", "value": 1},
     lambda n: {"type": "control", "action": "request"},
     lambda n: {**BEAT, "seq": n},
+    lambda n: {**START, "id": f"{n}-stop"},  # which is none
+    lambda n: {"type": "jog_end", "id": "estop"},
     lambda n: "nonsense",
 ]
 

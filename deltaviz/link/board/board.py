@@ -193,7 +193,8 @@ class SimulatedBoard:
             self._take_configuration(parameters)
 
     def _take_configuration(self, parameters: Parameters) -> None:
-        homed = self._start_homed and self._control.robot is None
+        untouched = self._control.robot is None and self._control.cause is StopCause.BOOT
+        homed = self._start_homed and untouched  # an e-stop before this has ended that
         configure = parameters.configure
         ready = [r / m for r, m in zip(configure.ready, configure.microsteps_per_rad, strict=True)]
         robot = ConfiguredBoard(
