@@ -228,6 +228,10 @@ class Controller(Core):
         self._override = intent.value
         return ACCEPTED
 
+    def objection(self, intent: i.SelectRobot) -> i.Refused | None:
+        """Why another robot may not be chosen now, or None."""
+        return self._refusal(intent.client, _EVENTS[type(intent)])
+
     def _refusal(self, client: str, event: Event) -> i.Refused | None:
         """Why `client` may not ask for `event` now, or None."""
         refused = self._control.refusal(client, at_rest=self.mode in AT_REST)

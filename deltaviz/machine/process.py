@@ -13,10 +13,12 @@ import os
 import signal
 import socket
 import sys
+import threading
 import time
 import traceback
-from collections.abc import Generator
-from dataclasses import replace
+from collections.abc import Callable, Generator
+from concurrent.futures import Future
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from functools import partial
 from importlib.metadata import version
@@ -41,6 +43,7 @@ from deltaviz.machine.opener import ThreadOpener
 from deltaviz.machine.transitions import MOVING
 from deltaviz.machine.wire import (
     BEGINS_MOTION,
+    LOADING,
     STOPPED_SINCE,
     Answered,
     Driven,
@@ -51,7 +54,7 @@ from deltaviz.machine.wire import (
     StatsRequest,
 )
 from deltaviz.robots import Robot
-from deltaviz.robots.load import load_with_text
+from deltaviz.robots.load import Loaded, load_with_text
 
 MOVING_WAIT = 0.002  # s
 IDLE_WAIT = 0.020
@@ -59,6 +62,15 @@ SNAPSHOT_PERIOD = 0.012  # s while something changes
 SNAPSHOT_IDLE = 0.100
 REST_WITHIN = 1.2  # s for coming to rest at the end; then the board's own lease has to do
 NICE = -10
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """Another robot, while it is loaded."""
+
+    posted: Posted
+    intent: i.SelectRobot
+    loading: Future[Loaded]
 
 
 class Process:
@@ -73,11 +85,12 @@ class Process:
         self._talk_out = FrameWriter(talk)
         self._links = Links(setup.link)
         self._read: str | None = None  # the text of a robot that the parent has to be told
-        loaders = {key: partial(self._load, source) for key, source in setup.robots.items()}
+        self._sources = setup.robots
+        self._choice: Choice | None = None
         self._controller = Controller(
-            loaders[setup.robot](),
+            self._take(load(self._sources[setup.robot])),
             robot_id=setup.robot,
-            robots=loaders,
+            robots=dict.fromkeys(self._sources, self._chosen),
             link=self._links.given.id,
             robot_of=KnownRobots(setup.robots).name_of,
         )
@@ -132,6 +145,7 @@ class Process:
         self._read_stops()
         self._keeper.receive(time.monotonic())  # first: intents may begin a motion on its news
         self._read_intents()
+        self._choose()
         now = time.monotonic()
         moving = self._controller.mode in MOVING
         if moving and self._ticked is not None:
@@ -160,10 +174,41 @@ class Process:
     def _read_intents(self) -> None:
         for posted in self._talk_in.read():
             self._read_stops()  # one that came while these were taken goes first
-            self._talk_out.send(Answered(posted.number, self._answer(posted)))
-            self._changed = True
+            if not self._begins_choice(posted):
+                self._reply(posted, self._answer(posted))
         if self._talk_in.closed:
             self._end("The program that ran the robot is gone.")
+
+    def _reply(self, posted: Posted, answer: Any) -> None:
+        self._talk_out.send(Answered(posted.number, answer))
+        self._changed = True
+
+    def _begins_choice(self, posted: Posted) -> bool:
+        """Another robot is loaded beside the loop: compiling takes seconds, and a stop waits for
+        nothing. Meanwhile nothing begins to move."""
+        what = posted.what
+        if not isinstance(what, i.SelectRobot) or self._choice is not None:
+            return False
+        source = self._sources.get(what.robot)
+        if source is None or self._controller.objection(what) is not None:
+            return False
+        self._choice = Choice(posted, what, begin(partial(load, source)))
+        return True
+
+    def _choose(self) -> None:
+        if self._choice is not None and self._choice.loading.done() and self._ends is None:
+            answer = self._controller.handle(self._choice.intent, time.monotonic())
+            posted, self._choice = self._choice.posted, None
+            self._reply(posted, answer)
+
+    def _chosen(self) -> Robot:
+        """Raises RobotFileError."""
+        assert self._choice is not None
+        return self._take(self._choice.loading.result())
+
+    def _take(self, loaded: Loaded) -> Robot:
+        self._read = loaded.text
+        return loaded.robot
 
     def _answer(self, posted: Posted) -> Any:
         what = posted.what
@@ -177,16 +222,9 @@ class Process:
             posted.number <= self._stopped_after or self._ends is not None
         ):
             return STOPPED_SINCE
+        if self._choice is not None and isinstance(what, (*BEGINS_MOTION, i.SelectRobot)):
+            return LOADING
         return self._controller.handle(what, time.monotonic())
-
-    def _load(self, source: str) -> Robot:
-        """The robot, with all compiled that the loop will call. Compiling takes its turn."""
-        loaded = load_with_text(source)
-        check_configurable(loaded.robot)
-        with _in_turn():
-            warm_up(loaded.robot)
-        self._read = loaded.text
-        return loaded.robot
 
     def _open_link(self, link: str, robot: Robot) -> Transport:
         tap = untapped if self._capture is None else partial(self._capture.tap, link)
@@ -225,6 +263,29 @@ class Process:
             wait(sources, timeout)
         else:
             time.sleep(timeout)
+
+
+def load(source: str) -> Loaded:
+    """The robot, with all compiled that the loop will call. Compiling takes its turn."""
+    loaded = load_with_text(source)
+    check_configurable(loaded.robot)
+    with _in_turn():
+        warm_up(loaded.robot)
+    return loaded
+
+
+def begin(work: Callable[[], Loaded]) -> Future[Loaded]:
+    """In a thread that keeps nothing from ending."""
+    future: Future[Loaded] = Future()
+
+    def run() -> None:
+        try:
+            future.set_result(work())
+        except BaseException as error:
+            future.set_exception(error)
+
+    threading.Thread(target=run, name="loader", daemon=True).start()
+    return future
 
 
 def main() -> int:

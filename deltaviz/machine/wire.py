@@ -27,6 +27,9 @@ BEGINS_MOTION = (
 STOPPED_SINCE = i.Refused(
     i.RefusalKind.MODE, "The robot was stopped after this was asked for; ask again."
 )
+LOADING = i.Refused(
+    i.RefusalKind.MODE, "Another robot is being loaded; wait until it is shown, then ask again."
+)
 
 
 @dataclass(frozen=True, slots=True)
