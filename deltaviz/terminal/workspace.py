@@ -9,6 +9,7 @@ import os
 import sys
 from typing import TYPE_CHECKING
 
+from deltaviz.terminal.files import first_unwritable
 from deltaviz.terminal.numbers import finite, not_negative, positive
 from deltaviz.terminal.status import BAD_USAGE, FAILED, OK
 from deltaviz.terminal.workspace_answers import Answer, answers
@@ -80,6 +81,11 @@ def run(robot: Robot, options: argparse.Namespace) -> int:
     if wrong is not None:
         print(f"deltaviz: {wrong}", file=sys.stderr)
         return BAD_USAGE
+    files = {"--plot": options.plot, "--csv": options.csv, "--stl": options.stl}
+    wrong = first_unwritable(files)  # asked before what takes seconds
+    if wrong is not None:
+        print(f"deltaviz: {wrong}", file=sys.stderr)
+        return FAILED
     workspace = robot.workspace(
         _flags(options.limits), tolerance=options.resolution or 1.0, threads=os.cpu_count() or 1
     )
