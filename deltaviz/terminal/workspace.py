@@ -169,6 +169,7 @@ def _print_found(workspace: Workspace, options: argparse.Namespace) -> None:
 
 def _print_report(found: Report) -> None:
     from deltaviz.robots.workspace.report import limit_names
+    from deltaviz.robots.workspace.size_text import size_text
 
     workspace = found.workspace
     planar = workspace.margins.dimensions == 2
@@ -176,7 +177,7 @@ def _print_report(found: Report) -> None:
         f"{workspace.robot.name}: tool tip, limits {', '.join(limit_names(workspace.considered))}"
     )
     _print_not_considered(workspace)
-    size = _area_text(workspace.volume) if planar else _volume_text(workspace.volume)
+    size = size_text(workspace.volume, dimensions=workspace.margins.dimensions)
     digits = _digits(workspace.tolerance)
     sides = zip(
         workspace.robot.axes, found.extents.low.tolist(), found.extents.high.tolist(), strict=True
@@ -215,18 +216,6 @@ def _print_reach(found: Report) -> None:
 def _digits(tolerance: float) -> int:
     """Behind the point, of lengths that are within a tolerance."""
     return max(1, math.ceil(-math.log10(tolerance)))
-
-
-def _volume_text(volume: float) -> str:
-    """Of mm³."""
-    if volume >= 1e5:
-        return f"{volume / 1e6:.3f} l"
-    return f"{volume / 1e3:.4g} cm³" if volume >= 100 else f"{volume:.4g} mm³"
-
-
-def _area_text(area: float) -> str:
-    """Of mm²."""
-    return f"{area / 100:.1f} cm²" if area >= 1e3 else f"{area:.4g} mm²"
 
 
 def _print_inscribed(found: Inscribed | None) -> None:
