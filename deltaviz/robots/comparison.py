@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING
 
 from deltaviz.robots.workspace.report import Report, report
 from deltaviz.robots.workspace.shapes import Cuboid, Cylinder
+from deltaviz.robots.workspace.workspace import TOLERANCES
 
 if TYPE_CHECKING:
     from deltaviz.robots.robot import Robot
-
-TOLERANCES = 150  # in a forearm: how near the boundary is to the true one, without a wish
 
 
 @dataclass(frozen=True, slots=True)

@@ -85,6 +85,9 @@ class JointNumbers:
         if self.max_travel < travel:
             rule = f"at least {travel:g}, the way from the other joint limit to the switch"
             raise self._wrong("homing", "max_travel_deg", self.max_travel, rule)
+        if self.backoff > travel:
+            rule = f"at most {travel:g}, the way from the switch to the other joint limit"
+            raise self._wrong("homing", "backoff_deg", self.backoff, rule)
 
     def _wrong(self, section: str, name: str, value: float, rule: str) -> Inconsistent:
         field = f"{getattr(self.sections, section)}.{name}"

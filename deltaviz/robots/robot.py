@@ -257,13 +257,14 @@ class Robot:
         return np.concatenate(groups, axis=-1) + ROUNDING
 
     def workspace(
-        self, limits: Limit | None = None, *, tolerance: float = 1.0, threads: int = 1
+        self, limits: Limit | None = None, *, tolerance: float | None = None, threads: int = 1
     ) -> Workspace:
         """All tool tips within reach under limits (those of the machine, without the zone), its
-        boundary to a tolerance in mm."""
-        from deltaviz.robots.workspace import Limit, Workspace
+        boundary to a tolerance in mm: 1, or for small robots 1/150 of the longest forearm."""
+        from deltaviz.robots.workspace import Limit, Workspace, own_tolerance
 
-        return Workspace(self, limits or Limit.MACHINE, tolerance=tolerance, threads=threads)
+        near = own_tolerance(self) if tolerance is None else tolerance
+        return Workspace(self, limits or Limit.MACHINE, tolerance=near, threads=threads)
 
     def reach(self, xyz: ArrayLike) -> Reach:
         """Whether the tool tip may be at one point (d,) mm, and if not, why."""

@@ -27,8 +27,9 @@ def _finite(value: object) -> float:
     return float(value)
 
 
-def _between(low: float, high: float, rule: str) -> Any:
+def _between(low: float, high: float, rule: str = "") -> Any:
     """One finite number strictly between two bounds."""
+    rule = rule or f"must be between {low:g} and {high:g}, and neither of them"
 
     def check(value: object) -> float:
         number = _finite(value)
@@ -74,7 +75,8 @@ def _list_of(check: Any, count: int, rule: str) -> Any:
 
 
 def _directions(value: object, info: ValidationInfo) -> tuple[float, ...]:
-    return _list_of(_finite, _arms(info), "must be one direction per arm")(value)
+    arms = _arms(info)
+    return _list_of(_finite, arms, f"must be {arms} directions (one per arm)")(value)
 
 
 def _planar_offset(value: object) -> tuple[float, ...]:
@@ -121,7 +123,7 @@ def _length(value: object) -> float:
 
 
 _above_zero = _between(0.0, math.inf, "must be greater than 0")
-_angle = _between(-180.0, 180.0, "must be between -180 and 180")
+_angle = _between(-180.0, 180.0)
 
 Positive = Annotated[float, BeforeValidator(_above_zero)]
 PerArm = Annotated[tuple[float, ...], BeforeValidator(_each(_above_zero))]
@@ -141,10 +143,8 @@ Gear = Annotated[
 Range = Annotated[tuple[float, float], BeforeValidator(_range)]
 Whole = Annotated[int, BeforeValidator(_whole)]
 Text = Annotated[str, BeforeValidator(_text)]
-BallJoint = Annotated[float, BeforeValidator(_between(0.0, 90.0, "must be between 0 and 90"))]
-Turn = Annotated[
-    float, BeforeValidator(_between(-1080.0, 1080.0, "must be between -1080 and 1080"))
-]
+BallJoint = Annotated[float, BeforeValidator(_between(0.0, 90.0))]
+Turn = Annotated[float, BeforeValidator(_between(-1080.0, 1080.0))]
 
 
 class Section(BaseModel):

@@ -7,6 +7,7 @@ import json
 import sys
 from typing import TYPE_CHECKING
 
+from deltaviz.terminal.files import first_unwritable
 from deltaviz.terminal.numbers import not_negative, positive
 from deltaviz.terminal.status import FAILED, OK
 
@@ -34,6 +35,10 @@ def run(one: Robot, other: Robot, options: argparse.Namespace) -> int:
     from deltaviz.robots.workspace import Empty
     from deltaviz.robots.workspace.plot import PlotsMissing
 
+    wrong = first_unwritable({"--plot": options.plot})  # asked before what takes seconds
+    if wrong is not None:
+        print(f"deltaviz: {wrong}", file=sys.stderr)
+        return FAILED
     try:
         found = compare(
             *(

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from deltaviz.terminal.design_options import WrongWish, ranges, wish
+from deltaviz.terminal.files import first_unwritable
 from deltaviz.terminal.status import BAD_USAGE, FAILED, OK
 
 if TYPE_CHECKING:
@@ -36,9 +37,9 @@ def run(template: Robot, template_text: str, options: argparse.Namespace) -> int
     if out.exists() and not options.overwrite:
         print(f"deltaviz: {out} is there already; --overwrite writes over it", file=sys.stderr)
         return FAILED
-    unwritable = _unwritable(out)  # asked before the search, which takes minutes
-    if unwritable is not None:
-        print(f"deltaviz: --out {out}: {unwritable}", file=sys.stderr)
+    wrong = first_unwritable({"--out": str(out)})  # asked before the search, which takes minutes
+    if wrong is not None:
+        print(f"deltaviz: {wrong}", file=sys.stderr)
         return FAILED
     designed = _designed(template, template_text, wished, sizes, out, options)
     if designed is None:
@@ -50,18 +51,6 @@ def run(template: Robot, template_text: str, options: argparse.Namespace) -> int
         return FAILED
     print(as_json(designed, out) if options.json else text(designed, out))
     return OK
-
-
-def _unwritable(out: Path) -> str | None:
-    """Why a file cannot be written; it is left as it was."""
-    was_there = out.exists()
-    try:
-        out.open("a").close()
-        if not was_there:
-            out.unlink()
-    except OSError as error:
-        return error.strerror or str(error)
-    return None
 
 
 def _designed(

@@ -9,6 +9,7 @@ import os
 import sys
 from typing import TYPE_CHECKING
 
+from deltaviz.terminal.files import first_unwritable
 from deltaviz.terminal.numbers import finite, not_negative, positive
 from deltaviz.terminal.status import BAD_USAGE, FAILED, OK
 from deltaviz.terminal.workspace_answers import Answer, answers
@@ -20,7 +21,7 @@ if TYPE_CHECKING:  # the command line starts before the layers it needs are know
 
 LIMITS = ("reach", "joints", "ball-joints", "singularities", "collisions", "zone")
 MACHINE = LIMITS[:-1]
-CSV_SPACING = 10.0  # mm
+CSV_SPACING = 10.0  # times the boundary's tolerance
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -30,7 +31,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     parser.add_argument(
         "--resolution", type=positive, metavar="MM",
-        help="how near the boundary is to the true one (1); spacing of the CSV's points (10)",
+        help="how near the boundary is to the true one (1, for small robots 1/150 of the forearm); "
+        "spacing of the CSV's points (10 times that)",
     )  # fmt: skip
     parser.add_argument(
         "--at", type=finite, metavar="Z", help="height of the floor that shapes stand on, mm"
@@ -80,8 +82,13 @@ def run(robot: Robot, options: argparse.Namespace) -> int:
     if wrong is not None:
         print(f"deltaviz: {wrong}", file=sys.stderr)
         return BAD_USAGE
+    files = {"--plot": options.plot, "--csv": options.csv, "--stl": options.stl}
+    wrong = first_unwritable(files)  # asked before what takes seconds
+    if wrong is not None:
+        print(f"deltaviz: {wrong}", file=sys.stderr)
+        return FAILED
     workspace = robot.workspace(
-        _flags(options.limits), tolerance=options.resolution or 1.0, threads=os.cpu_count() or 1
+        _flags(options.limits), tolerance=options.resolution, threads=os.cpu_count() or 1
     )
     if workspace.empty:
         if options.json:
@@ -162,6 +169,7 @@ def _print_found(workspace: Workspace, options: argparse.Namespace) -> None:
 
 def _print_report(found: Report) -> None:
     from deltaviz.robots.workspace.report import limit_names
+    from deltaviz.robots.workspace.size_text import size_text
 
     workspace = found.workspace
     planar = workspace.margins.dimensions == 2
@@ -169,20 +177,24 @@ def _print_report(found: Report) -> None:
         f"{workspace.robot.name}: tool tip, limits {', '.join(limit_names(workspace.considered))}"
     )
     _print_not_considered(workspace)
-    size = f"{workspace.volume / 100:.1f} cm²" if planar else f"{workspace.volume / 1e6:.3f} l"
+    size = size_text(workspace.volume, dimensions=workspace.margins.dimensions)
+    digits = _digits(workspace.tolerance)
     sides = zip(
         workspace.robot.axes, found.extents.low.tolist(), found.extents.high.tolist(), strict=True
     )
     print(f"{'Area' if planar else 'Volume'} {size}; boundary within "
-          f"{workspace.boundary.deviation:.2f} mm, thinner than {workspace.boundary.cell:.1f} mm "
+          f"{workspace.boundary.deviation:.{digits + 1}f} mm, thinner than "
+          f"{workspace.boundary.cell:.{digits}f} mm "
           "may be missing")  # fmt: skip
-    print("; ".join(f"{axis} {lo:.1f} to {hi:.1f}" for axis, lo, hi in sides), "mm")
+    spans = (f"{axis} {lo:.{digits}f} to {hi:.{digits}f}" for axis, lo, hi in sides)
+    print("; ".join(spans), "mm")
     print(f"Of its zone {100 * found.zone_reached:.1f} % is reached", end="")
     if found.parts is None:
         print()
     else:
         one, other = found.parts.parts
-        print(f"; there its parts come no nearer than {found.parts.gap:.1f} mm ({one}, {other})")
+        gap = f"{found.parts.gap:.{digits}f} mm"
+        print(f"; there its parts come no nearer than {gap} ({one}, {other})")
     _print_reach(found)
     _print_inscribed(found.cylinder)
     _print_inscribed(found.box)
@@ -191,13 +203,19 @@ def _print_report(found: Report) -> None:
 
 
 def _print_reach(found: Report) -> None:
+    digits = _digits(found.workspace.tolerance)
     print("\n  Z mm   farthest  all around   nearest   (mm from the vertical axis)")
     for row in found.reach:
         farthest, nearest = (
-            "      none" if v is None else f"{v:10.1f}" for v in (row.farthest, row.nearest)
+            "      none" if v is None else f"{v:10.{digits}f}" for v in (row.farthest, row.nearest)
         )
-        print(f"{row.z:6.6g} {farthest} {row.all_around:11.1f} {nearest}")
+        print(f"{row.z:6.6g} {farthest} {row.all_around:11.{digits}f} {nearest}")
     print()
+
+
+def _digits(tolerance: float) -> int:
+    """Behind the point, of lengths that are within a tolerance."""
+    return max(1, math.ceil(-math.log10(tolerance)))
 
 
 def _print_inscribed(found: Inscribed | None) -> None:
@@ -240,7 +258,9 @@ def _write(workspace: Workspace, options: argparse.Namespace) -> bool:
 
     try:
         if options.csv:
-            write_csv(workspace, options.csv, options.resolution or CSV_SPACING)
+            write_csv(
+                workspace, options.csv, options.resolution or CSV_SPACING * workspace.tolerance
+            )
         if options.stl:
             write_stl(workspace, options.stl)
         if options.plot:

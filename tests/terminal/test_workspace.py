@@ -63,6 +63,38 @@ def test_a_planar_robot_has_an_area(capsys: pytest.CaptureFixture[str]) -> None:
     assert "Y " not in out.splitlines()[2]
 
 
+def hundredth(preset: str) -> str:
+    """The same robot with all lengths (and speeds) a hundredth."""
+    head, rest = preset_text(preset).split("[joints]")
+    zone = rest.index("[workspace]")
+
+    def smaller(found: re.Match[str]) -> str:
+        return f"{found[1]}{float(found[2]) / 100!r}"
+
+    lengths = re.sub(r"(?m)^((?:base|platform|upper|fore)\w* = )([\d.]+)", smaller, head)
+    cut = rest.index("[limits.joint]")
+    space = re.sub(r"([\[ ])(-?[\d.]+)(?=[,\]])", smaller, rest[zone:cut])
+    return f"{lengths}[joints]{rest[:zone]}{space}{rest[cut:]}"
+
+
+def test_a_robot_of_a_few_mm_is_judged_as_finely_as_its_size(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    path = tmp_path / "small.toml"
+    path.write_text(hundredth("fivebar"))
+    status, out, _ = run(capsys, "workspace", "--robot", str(path))
+    assert status == 0
+    assert "Area 3.5" in out
+    assert " cm²" not in out
+    rows = [line.split() for line in out.splitlines() if line.startswith("  -")]
+    assert rows
+    assert all(float(nearest) == 0 < float(farthest) for _, farthest, _, nearest in rows)
+    small = load_robot(str(path)).workspace()
+    large = load_robot("fivebar").workspace()
+    for one, other in zip(small.extents.size, large.extents.size, strict=True):
+        assert 100 * one == pytest.approx(other, rel=0.01)
+
+
 def test_json_holds_the_same_as_the_text(capsys: pytest.CaptureFixture[str]) -> None:
     data = found(capsys)
     assert data["robot"] == "fivebar"
@@ -320,12 +352,13 @@ def test_pictures_show_something(stm32: Workspace, tmp_path: Path, colour: str |
     assert len(colours) > (1000 if colour else 100)
 
 
-def test_a_picture_that_cannot_be_written(capsys: pytest.CaptureFixture[str]) -> None:
-    status, _, err = run(
-        capsys, "workspace", "--robot", "fivebar", *COARSE, "--plot", "/nowhere/x.png"
-    )
-    assert status == 1
-    assert "/nowhere/x.png" in err
+@pytest.mark.parametrize("option", ["--plot", "--csv", "--stl"])
+def test_a_file_that_cannot_be_written_is_told_first(
+    capsys: pytest.CaptureFixture[str], option: str
+) -> None:
+    status, out, err = run(capsys, "workspace", *COARSE, option, "/nowhere/x.png")
+    assert (status, out) == (1, "")
+    assert err == f"deltaviz: {option} /nowhere/x.png: No such file or directory\n"
 
 
 def test_without_matplotlib_it_says_how_to_get_it(

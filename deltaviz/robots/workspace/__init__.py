@@ -12,7 +12,7 @@ from deltaviz.robots.workspace.margins import Margins
 from deltaviz.robots.workspace.quality import Quality, quality
 from deltaviz.robots.workspace.shapes import Belt, Cuboid, Cylinder
 from deltaviz.robots.workspace.stretch import Stretch
-from deltaviz.robots.workspace.workspace import Empty, Inscribed, Workspace
+from deltaviz.robots.workspace.workspace import Empty, Inscribed, Workspace, own_tolerance
 
 __all__ = [
     "Belt",
@@ -29,5 +29,6 @@ __all__ = [
     "Stretch",
     "Workspace",
     "levels",
+    "own_tolerance",
     "quality",
 ]

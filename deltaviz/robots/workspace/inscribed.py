@@ -56,8 +56,8 @@ def largest(
     margins: Margins, box: Box, stem: Stem, wanted: Wanted, tolerance: float
 ) -> Body | None:
     """`box` must hold the workspace. About a given line a thickness is within `tolerance` mm of
-    the bound; over all lines the bound is wider by some hundredths of the box. None if nothing
-    fits."""
+    the bound, unless the body is too flat to be bounded (`sketch.MOST_PLACES`); over all lines the
+    bound is wider by some hundredths of the box. None if nothing fits."""
     if wanted.centre is not None:
         return _proved(margins, box, stem, wanted, wanted.centre, tolerance)
     # Collisions take long, and bind at few places: those lines are judged without.

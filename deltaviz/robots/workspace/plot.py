@@ -9,6 +9,7 @@ import numpy as np
 
 from deltaviz.mechanism.arrays import Array
 from deltaviz.robots.workspace.quality import UNITS, WORSE_ABOVE, Quality
+from deltaviz.robots.workspace.size_text import size_text
 from deltaviz.robots.workspace.workspace import Empty, Workspace
 
 if TYPE_CHECKING:
@@ -83,8 +84,7 @@ class _Colours:
 
 
 def _title(workspace: Workspace, colour: str | None) -> str:
-    planar = workspace.margins.dimensions == 2
-    size = f"{workspace.volume / 100:.4g} cm²" if planar else f"{workspace.volume / 1e6:.4g} l"
+    size = size_text(workspace.volume, dimensions=workspace.margins.dimensions)
     name = f"{workspace.robot.name}: reached by the tool tip, {size}"
     if colour is None:
         return name

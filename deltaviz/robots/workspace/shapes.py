@@ -57,7 +57,7 @@ class Cylinder:
 
     def __str__(self) -> str:
         return (
-            f"cylinder {_mm(self.diameter)} mm across and {_mm(self.height)} mm high"
+            f"cylinder {_size(self.diameter)} mm across and {_size(self.height)} mm high"
             f"{_about(self.centre)}, {_between_heights(self.floor, self.height)}"
         )
 
@@ -88,7 +88,7 @@ class Cuboid:
         return np.minimum(across, _between(points, self.floor, self.height))
 
     def __str__(self) -> str:
-        sides = " by ".join(_mm(side) for side in (*self.size, self.height))
+        sides = " by ".join(_size(side) for side in (*self.size, self.height))
         name = "rectangle" if len(self.size) == 1 else "box"
         heights = _between_heights(self.floor, self.height)
         return f"{name} of {sides} mm{_about(self.centre)}, {heights}"
@@ -113,7 +113,7 @@ class Belt:
     def __str__(self) -> str:
         along = "xy"[self.axis]
         heights = _between_heights(self.floor, self.height)
-        return f"belt {_mm(self.width)} mm wide along {along}, {heights}"
+        return f"belt {_size(self.width)} mm wide along {along}, {heights}"
 
 
 @dataclass(frozen=True)
@@ -149,3 +149,8 @@ def _between_heights(floor: float, height: float) -> str:
 def _mm(length: float) -> str:
     """To a tenth, without trailing zeros."""
     return f"{round(length, 1) + 0.0:.6g}"
+
+
+def _size(length: float) -> str:
+    """Of little more digits than a tenth, so that nothing seems to be 0."""
+    return f"{length:.3g}" if length < 10 else _mm(length)

@@ -20,6 +20,7 @@ from deltaviz.robots.workspace.stems import Stem
 PLACES = 300  # along a line at the beginning
 PARTS = 4  # into which the way between two places is cut where a better body may end
 MOST_CUT = 40  # ways in one round, those that promise most
+MOST_PLACES = 5000  # along a line: a body that needs more is too flat to be bounded
 
 Measure = Callable[[Array], Clearances]
 
@@ -130,6 +131,10 @@ def _of_length(
     ahead = np.searchsorted(t, t[:-1] + length, "right")
     bounds = np.array([taken[i + 1 : ahead[i]].min(initial=most) for i in range(len(t) - 1)])
     ways = _promising(t, bounds, worth + slack)
+    if np.diff(t)[bounds > worth + slack].sum() > MOST_PLACES * length:
+        # It fits between places almost anywhere, where nothing bounds it: only a better one is
+        # looked for, beside the best.
+        ways = np.clip(np.searchsorted(t, start) + np.array((-1, 0)), 0, len(t) - 2)
     finer = [start, start + longer]
     for i in ways:
         cuts = np.linspace(t[i], t[i + 1], PARTS + 1)

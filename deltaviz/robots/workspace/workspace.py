@@ -35,6 +35,14 @@ if TYPE_CHECKING:
 QUALITY_POINTS = 20_000
 COUNTED = 40  # cells along the longest side, by which its size is guessed
 HEIGHTS = 12
+TOLERANCE = 1.0  # mm, without a wish
+TOLERANCES = 150  # in a forearm, at least
+
+
+def own_tolerance(robot: Robot) -> float:
+    """How near the boundary of a robot's workspace is to the true one without a wish, mm: finer
+    where a robot is so small that TOLERANCE would blur it."""
+    return min(TOLERANCE, max(robot.mechanism.forearm) / TOLERANCES)
 
 
 class Empty(ValueError):
@@ -59,7 +67,7 @@ class Workspace:
 
     robot: Robot
     limits: Limit = Limit.MACHINE
-    tolerance: float = 1.0
+    tolerance: float = TOLERANCE
     threads: int = 1
 
     @cached_property

@@ -5,13 +5,15 @@ from __future__ import annotations
 import itertools
 import math
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
 
 from deltaviz.mechanism.margin import MarginKind
 from deltaviz.robots import Robot, load_robot
-from deltaviz.robots.workspace import Belt, Cuboid, Cylinder, Limit, Workspace
+from deltaviz.robots.workspace import Belt, Cuboid, Cylinder, Limit, Workspace, inscribed
+from deltaviz.robots.workspace.clearances import Clearances, clearances
 from tests.robots.workspace import oracle
 from tests.robots.workspace.conftest import DELTAS
 
@@ -131,6 +133,12 @@ def test_the_largest_rectangle_in_a_plane() -> None:
     assert found.most < 1.03 * found.shape.volume
     with pytest.raises(ValueError, match="no cylinders"):
         robot.workspace().largest_cylinder()
+
+
+@pytest.mark.parametrize(("height", "told"), [(0.001, "0.001"), (0.25, "0.25"), (4.567, "4.57")])
+def test_a_thin_shape_is_told_to_have_a_height(height: float, told: str) -> None:
+    assert f"across and {told} mm high" in str(Cylinder(10.0, height, -300.0))
+    assert f"by {told} mm" in str(Cuboid((10.0, 20.0), height, -300.0, (0.0, 0.0)))
 
 
 def test_nothing_fits_where_nothing_is_reached(space: Workspace) -> None:
@@ -260,6 +268,27 @@ def test_a_flat_cylinder_between_parts_that_nearly_touch() -> None:
     assert isinstance(found.shape, Cylinder)
     assert (workspace.margins.least(skin_of_cylinder(found.shape)) >= 0).all()
     assert found.most < found.shape.diameter + 3
+
+
+def test_a_sheet_takes_no_minute(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It fits between measured places almost anywhere; that was cut finer until all turns were
+    spent."""
+    measured: list[int] = []
+
+    def counted(*arguments: Any, **options: Any) -> Clearances:
+        found = clearances(*arguments, **options)
+        measured.append(len(found.places))
+        return found
+
+    plate = workspace_of("stm32").largest_cylinder(height=20.0)
+    monkeypatch.setattr(inscribed, "clearances", counted)
+    sheet = workspace_of("stm32").largest_cylinder(height=0.001)
+    assert sheet is not None
+    assert plate is not None
+    assert isinstance(sheet.shape, Cylinder)
+    assert isinstance(plate.shape, Cylinder)
+    assert plate.shape.diameter - 0.5 < sheet.shape.diameter <= sheet.most
+    assert sum(measured) < 5000
 
 
 @cache
