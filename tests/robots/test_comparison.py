@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import pytest
 
 from deltaviz.mechanism import FiveBar
 from deltaviz.robots import Robot, load_robot
+from deltaviz.robots.bodies import PlanarBodies
 from deltaviz.robots.comparison import Comparison, Row, compare, measure
 from deltaviz.robots.comparison_plot import plot
 
@@ -28,7 +29,9 @@ def scaled(robot: Robot, by: float) -> Robot:
     lengths = ("base_half", "platform_half", "upper_arm", "forearm")
     grown = {name: [by * v for v in getattr(mechanism, name)] for name in lengths}
     z, x = ((by * low, by * high) for low, high in (zone.z, zone.x))
-    return replace(robot, mechanism=FiveBar(**grown), zone=replace(zone, z=z, x=x))
+    assert isinstance(robot.bodies, PlanarBodies)
+    bodies = PlanarBodies(**{name: by * width for name, width in asdict(robot.bodies).items()})
+    return replace(robot, mechanism=FiveBar(**grown), zone=replace(zone, z=z, x=x), bodies=bodies)
 
 
 @pytest.fixture(scope="module")

@@ -74,7 +74,8 @@ def hundredth(preset: str) -> str:
     lengths = re.sub(r"(?m)^((?:base|platform|upper|fore)\w* = )([\d.]+)", smaller, head)
     cut = rest.index("[limits.joint]")
     space = re.sub(r"([\[ ])(-?[\d.]+)(?=[,\]])", smaller, rest[zone:cut])
-    return f"{lengths}[joints]{rest[:zone]}{space}{rest[cut:]}"
+    others = re.sub(r"(?m)^(\w+_(?:thickness|width) = )([\d.]+)", smaller, rest[cut:])
+    return f"{lengths}[joints]{rest[:zone]}{space}{others}"
 
 
 def test_a_robot_of_a_few_mm_is_judged_as_finely_as_its_size(
