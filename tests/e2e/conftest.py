@@ -148,6 +148,26 @@ def served(serve: Callable[..., Served]) -> Served:
     return serve()
 
 
+@pytest.fixture(scope="package")
+def long_running() -> Iterator[Served]:
+    """One server for all tests that leave it as healthy as they found it."""
+    served = start_server()
+    yield served
+    served.end()
+
+
+@pytest.fixture
+def served_on(long_running: Served) -> Served:
+    """The same server again, with the robot and the board as at first."""
+    wait_for(
+        lambda: long_running.post("/api/robot", {"robot": "stm32"}),
+        lambda status: status == 200,
+        "the robot of the start",
+    )
+    long_running.wait(lambda s: s["robot"] == "stm32" and s["mode"] == "idle", "the start")
+    return long_running
+
+
 class Watcher:
     """Another client, which sees every state that the server sends, as it comes."""
 

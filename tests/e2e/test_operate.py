@@ -16,6 +16,11 @@ TRIES = 12  # of a press that the page may break off by itself
 CLOSE = 0.4  # mm: one microstep of each of the three joints
 
 
+@pytest.fixture
+def served(served_on: Any) -> Any:
+    return served_on
+
+
 def slider(page: Page, name: str) -> Locator:
     return page.frame_locator("#scene").get_by_role("slider", name=name)
 

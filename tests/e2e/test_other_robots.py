@@ -18,6 +18,11 @@ CLOSE = 0.4  # mm: one microstep of each joint
 
 
 @pytest.fixture
+def served(served_on: Any) -> Any:
+    return served_on
+
+
+@pytest.fixture
 def five_bar(console: Page, served: Any) -> Page:
     """The page on which a person has chosen the five-bar."""
     console.locator("header select").select_option("fivebar")

@@ -313,7 +313,7 @@ def widest(
 
 
 SHARES, ASPECTS = (0.15, 0.45), (None, 1.0, 1.5, 0.6)
-QUICK = {("stm32", 1.5, 0.45), ("zheng2023", 1.0, 0.45)}
+QUICK = {("stm32", 1.5, 0.45)}
 
 
 @pytest.mark.parametrize(
