@@ -21,6 +21,7 @@ if TYPE_CHECKING:  # the command line starts before the layers it needs are know
 
 LIMITS = ("reach", "joints", "ball-joints", "singularities", "collisions", "zone")
 MACHINE = LIMITS[:-1]
+FINEST = 20_000  # resolutions in a forearm
 CSV_SPACING = 10.0  # times the boundary's tolerance
 
 
@@ -78,7 +79,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(robot: Robot, options: argparse.Namespace) -> int:
     """Status 1 if the workspace is empty, a shape does not fit, or a file cannot be written."""
     planar = len(robot.tool_offset) == 2
-    wrong = _wrong(options, planar=planar)
+    wrong = _wrong(options, planar=planar) or _too_fine(options.resolution, robot)
     if wrong is not None:
         print(f"deltaviz: {wrong}", file=sys.stderr)
         return BAD_USAGE
@@ -126,6 +127,16 @@ def _wrong(options: argparse.Namespace, *, planar: bool) -> str | None:
     if options.colour and not options.plot:
         return "--colour needs --plot FILE"
     return _unknown_colour(options.colour)
+
+
+def _too_fine(resolution: float | None, robot: Robot) -> str | None:
+    finest = max(robot.mechanism.forearm) / FINEST
+    if resolution is None or resolution >= finest:
+        return None
+    return (
+        f"--resolution {resolution:g}: at least {finest:.2g} mm, 1/{FINEST} of the forearm: "
+        "finer takes more memory and time than there is"
+    )
 
 
 def _unknown_colour(colour: str | None) -> str | None:

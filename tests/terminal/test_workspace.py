@@ -96,6 +96,15 @@ def test_a_robot_of_a_few_mm_is_judged_as_finely_as_its_size(
         assert 100 * one == pytest.approx(other, rel=0.01)
 
 
+def test_a_resolution_beyond_all_use_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    """The five-bar's forearms are 200 mm long."""
+    status, out, err = run(capsys, "workspace", "--robot", "fivebar", "--resolution", "0.0099")
+    assert (status, out) == (2, "")
+    assert err.startswith("deltaviz: --resolution 0.0099: at least 0.01 mm, 1/20000 of the forearm")
+    finest = ("--resolution", "0.01", "--box", "9", "9", "--at", "-250")
+    assert run(capsys, "workspace", "--robot", "fivebar", *finest)[0] == 0
+
+
 def test_json_holds_the_same_as_the_text(capsys: pytest.CaptureFixture[str]) -> None:
     data = found(capsys)
     assert data["robot"] == "fivebar"
@@ -265,9 +274,9 @@ def test_only_limits_that_were_considered_are_told(
 def test_points_without_end_are_refused(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     path = tmp_path / "points.csv"
     asked = ("workspace", "--robot", "fivebar", "--box", "10", "10", "--csv", str(path))
-    status, _, err = run(capsys, *asked, "--resolution", "0.002")
+    status, _, err = run(capsys, *asked, "--resolution", "0.01")
     assert status == 1
-    assert err.startswith("deltaviz: --resolution: a spacing of 0.002 mm makes ")
+    assert err.startswith("deltaviz: --resolution: a spacing of 0.01 mm makes ")
     assert not path.exists()
     possible = float(err.split("use ")[1].split(" mm")[0])
     box = load_robot("fivebar").workspace().box
