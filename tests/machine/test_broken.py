@@ -269,7 +269,8 @@ def test_a_drag_whose_page_falls_silent_brakes(bench: Any) -> None:
     assert "drag" in str(bench.snapshot.stop_reason)
 
 
-def test_a_slider_pulled_through_a_stop_does_not_resume(bench: Any) -> None:
+def a_pull_stopped(bench: Any) -> Callable[[], None]:
+    """A slider that is pulled on and on, when Stop has just been pressed."""
     target = 0.0
 
     def pull() -> None:
@@ -279,26 +280,23 @@ def test_a_slider_pulled_through_a_stop_does_not_resume(bench: Any) -> None:
 
     bench.run(0.3, each=pull)
     bench.do(i.Stop(YOU, "Stop pressed"))
+    return pull
+
+
+def test_a_slider_pulled_through_a_stop_does_not_resume(bench: Any) -> None:
+    pull = a_pull_stopped(bench)
     bench.run(0.3, each=pull)
     rested = bench.now
     bench.run(0.7, each=pull)
     assert bench.mode is Mode.IDLE
     assert bench.distance_moved(rested) == 0
     bench.run(0.5)
-    assert bench.do(i.FollowAngles(ME, (target, 0.0, 0.0))) == ACCEPTED
+    assert bench.do(i.FollowAngles(ME, (0.5, 0.0, 0.0))) == ACCEPTED
 
 
 def test_a_slider_pulled_through_a_long_stop_does_not_resume(bench: Any) -> None:
     """What is refused while the robot still brakes belongs to the same pull."""
-    target = 0.0
-
-    def pull() -> None:
-        nonlocal target
-        target += 0.001
-        bench.do(i.FollowAngles(ME, (target, 0.0, 0.0)))
-
-    bench.run(0.3, each=pull)
-    bench.do(i.Stop(YOU, "Stop pressed"))
+    pull = a_pull_stopped(bench)
     bench.cut = True
     bench.run(PAUSE + 0.1, each=pull)
     assert bench.mode is Mode.STOPPING
