@@ -259,6 +259,7 @@ def test_what_ends_the_stretch_of_a_belt(stm32: Robot, space: Workspace) -> None
         assert limit.kind in broken
 
 
+@pytest.mark.long
 def test_a_flat_cylinder_between_parts_that_nearly_touch() -> None:
     """Where the proof is coarsest: a metre wide, ended by a rod beside its own upper arm."""
     robot = load_robot("zheng2023")
@@ -270,6 +271,7 @@ def test_a_flat_cylinder_between_parts_that_nearly_touch() -> None:
     assert found.most < found.shape.diameter + 3
 
 
+@pytest.mark.long
 def test_a_sheet_takes_no_minute(monkeypatch: pytest.MonkeyPatch) -> None:
     """It fits between measured places almost anywhere; that was cut finer until all turns were
     spent."""
