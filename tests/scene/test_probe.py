@@ -15,6 +15,7 @@ from deltaviz.scene.workspace.pictures import Probed
 from deltaviz.scene.workspace.probe_shown import parsed
 from deltaviz.scene.workspace.probing import Probe
 from tests.robots.workspace import oracle
+from tests.robots.workspace.test_planar_collisions import least_gap
 
 Visit = Callable[[str | None], Any]
 LONG = 120.0  # s; a process that computes has to load first
@@ -219,6 +220,17 @@ def test_why_not_is_said_and_by_how_much(robot: Robot) -> None:
     assert far.theta_deg is None
     assert far.skill is None
     assert any("too far away" in reason for reason in far.why_not)
+
+
+def test_parts_that_would_overlap_are_named_of_a_planar_robot_too() -> None:
+    robot = load_robot("fivebar")
+    gap, pairs = least_gap(robot, np.array((-1.0, -81.5)))
+    assert gap < -1.0
+    assert pairs == [frozenset({("base", 0), ("forearm", 0)})]
+    found = probed(robot, -1, 0, -81.5)
+    (told,) = (reason for reason in found.why_not if "overlap" in reason)
+    assert told == f"Forearm of arm 1 and base would overlap by {-gap:.2f} mm."
+    assert not any("overlap" in reason for reason in probed(robot, 0, 0, -120).why_not)
 
 
 def test_the_nearest_limits_are_as_far_as_is_told(robot: Robot) -> None:

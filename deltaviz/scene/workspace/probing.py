@@ -47,8 +47,6 @@ def _arms(robot: Robot, theta: tuple[float, ...]) -> tuple[float, ...]:
 
 
 def _touching(margins: Margins, xyz: tuple[float, ...]) -> tuple[str, ...]:
-    if margins.dimensions == 2:
-        return ()
     gap, name = margins.gaps(np.array([xyz]))
     parts = margins.parts(int(name[0])) if gap[0] < 0 else None
     if parts is None:
